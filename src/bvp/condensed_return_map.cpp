@@ -6,13 +6,6 @@
 
 namespace tchat {
 
-namespace {
-
-/// The field is asked for the Gauss points of so many intervals at once.
-constexpr int intervals_at_once = 8;
-
-}  // namespace
-
 CondensedReturnMap::CondensedReturnMap(const DefiningSystem& system, const OrbitShape& shape, int vectors)
     : system_(system),
       shape_(shape),

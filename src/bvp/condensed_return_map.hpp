@@ -25,6 +25,9 @@ struct RowWeights {
   std::vector<double> ends;         ///< m (1 + n): of each segment the event row and the n rows of connectivity
 };
 
+/// The field is asked for the Gauss points of so many intervals at once.
+inline constexpr int intervals_at_once = 8;
+
 class CondensedReturnMap {
  public:
   /// `vectors`: of how many null vectors derivatives are asked for at a time.

@@ -6,18 +6,11 @@
 
 namespace tchat {
 
-namespace {
-
-/// The field is asked for the Gauss points of so many intervals at once.
-constexpr int intervals_of_call = 8;
-
-}  // namespace
-
 DirectionalExpansion::DirectionalExpansion(const DefiningSystem& system, const OrbitShape& shape)
     : system_(system),
       shape_(shape),
       rule_(shape.collocation),
-      states_(Eigen::MatrixXd::Zero(shape.dimension, 8 * intervals_of_call * shape.collocation)),
+      states_(Eigen::MatrixXd::Zero(shape.dimension, 8 * intervals_at_once * shape.collocation)),
       values_(states_) {}
 
 RowWeights DirectionalExpansion::make_rows() const {
@@ -30,8 +23,8 @@ RowWeights DirectionalExpansion::make_rows() const {
 void DirectionalExpansion::find(const Orbit& x, const OrbitVector& u, RowWeights& second, RowWeights& third) {
   for (int s = 0; s < x.shape.segments; ++s) {
     const int intervals = x.shape.intervals_of(s);
-    for (int first = 0; first < intervals; first += intervals_of_call)
-      put_intervals(x, u, s, first, std::min(first + intervals_of_call, intervals), second, third);
+    for (int first = 0; first < intervals; first += intervals_at_once)
+      put_intervals(x, u, s, first, std::min(first + intervals_at_once, intervals), second, third);
     put_ends(x, u, s, second, third);
   }
 }

@@ -10,9 +10,9 @@
 
 namespace tchat {
 
-HopfPair::HopfPair(const DefiningSystem& system, const OrbitShape& shape, int mode)
+HopfPair::HopfPair(const DefiningSystem& system, const OrbitShape& shape, std::optional<double> omega)
     : system_(system),
-      mode_(mode),
+      first_omega_(omega),
       jacobian_(shape.dimension, shape.dimension),
       by_state_(shape.dimension, shape.dimension),
       by_parameter_(shape.dimension, system.free_count()),
@@ -54,23 +54,21 @@ bool HopfPair::begin_at_double_zero() {
   return started_ = true;
 }
 
-/// The plane of the eigenvector of the pair nearest to the imaginary axis, or of the one that was asked for.
+/// The plane of the eigenvector of the chosen pair.
 bool HopfPair::begin() {
   constexpr double about_critical = 0.1;
-  const auto distance = [](const std::complex<double>& value) { return std::abs(value.real() / value.imag()); };
-  std::vector<std::complex<double>> pairs;  // the nearest first
-  for (const std::complex<double>& value : eigenvalues(jacobian_))
-    if (value.imag() > 0.0) pairs.push_back(value);
-  std::sort(pairs.begin(), pairs.end(), [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
-  const bool is_critical = !pairs.empty() && distance(pairs.front()) < about_critical;
+  const auto distance = [this](const std::complex<double>& value) {
+    return first_omega_ ? std::abs(value - std::complex<double>(0.0, *first_omega_))
+                        : std::abs(value.real() / value.imag());
+  };
+  const Eigen::VectorXcd values = eigenvalues(jacobian_);
+  const std::complex<double>* nearest = nullptr;
+  for (const auto& value : values)
+    if (value.imag() > 0.0 && (nearest == nullptr || distance(value) < distance(*nearest))) nearest = &value;
+  const bool is_critical = nearest != nullptr && std::abs(nearest->real()) < about_critical * nearest->imag();
   if (!is_critical && begin_at_double_zero()) return true;
-  if (mode_ > 0) {
-    std::erase_if(pairs, [&](const auto& value) { return distance(value) >= about_critical; });
-    std::sort(pairs.begin(), pairs.end(), [](const auto& a, const auto& b) { return a.imag() < b.imag(); });
-    pairs.erase(pairs.begin(), pairs.begin() + std::min(mode_ - 1, static_cast<int>(pairs.size())));
-  }
-  if (pairs.empty()) return false;
-  const std::complex<double> chosen = pairs.front();
+  if (nearest == nullptr) return false;
+  const std::complex<double> chosen = *nearest;
   const Eigen::VectorXcd vector = eigenvector(jacobian_, chosen);
   plane_.col(0) = vector.real();
   plane_.col(1) = vector.imag();

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "bvp/orbit_condition.hpp"
@@ -26,8 +27,8 @@ class DefiningSystem;
 
 class HopfPair final : public OrbitCondition {
  public:
-  /// `mode`: where it begins, which of the oscillations about the imaginary axis, 1 the slowest; 0: the nearest to it.
-  HopfPair(const DefiningSystem& system, const OrbitShape& shape, int mode = 0);
+  /// It begins with the pair nearest to +-i omega, or, without an omega, to the imaginary axis.
+  HopfPair(const DefiningSystem& system, const OrbitShape& shape, std::optional<double> omega = std::nullopt);
 
   /// False where no plane is found near the last one.
   bool evaluate(CondensedSystem& condensed, const Orbit& x) override;
@@ -60,7 +61,7 @@ class HopfPair final : public OrbitCondition {
   void add_gradient(const Orbit& x, const Eigen::VectorXd& v, const Eigen::VectorXd& w);
 
   const DefiningSystem& system_;
-  int mode_;
+  std::optional<double> first_omega_;
   Eigen::MatrixXd jacobian_, by_state_, by_parameter_;
   Eigen::VectorXd field_;
   std::vector<double> direction_;  // v and no change of the parameters

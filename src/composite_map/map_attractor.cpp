@@ -253,7 +253,7 @@ class Iteration {
     const double zero = bar(std::max<long>(1, found_.spectrum->events));
     const double largest = found_.spectrum->exponents(0);
     if (largest > zero)
-      tell_chaos(largest);
+      judge_chaos(largest);
     else if (largest >= -zero)
       found_.kind = AttractorKind::quasi_periodic;
     else
@@ -264,7 +264,7 @@ class Iteration {
   }
 
   /// Chaotic, unless the exponent is that of something unstable near which the iterates are.
-  void tell_chaos(double exponent) {
+  void judge_chaos(double exponent) {
     const auto begin_beside = [&](const VectorXd& change) -> std::unique_ptr<MotionBeside> {
       return std::make_unique<IteratesBeside>(map_, x_ + change, par_, settings_);
     };

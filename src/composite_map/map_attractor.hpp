@@ -31,8 +31,8 @@ struct MapAttractor {
   std::string message;  ///< why it has escaped or not settled
   int period = 0;       ///< in returns; 0: not periodic
   double time = 0.0;    ///< of one period; NaN
-  /// Section states, n x K: one period, or all after the transient; with the penetration of each and whether it has
-  /// been in contact.
+  /// Section states, n x K: one period, also of an unstable orbit, or all after the transient; with the penetration of
+  /// each and whether it has been in contact.
   Eigen::MatrixXd points;
   Eigen::VectorXd penetrations;
   std::vector<bool> contacts;

@@ -14,6 +14,7 @@
 #include "files/solution_file_reader.hpp"
 #include "problem_type/point_type.hpp"
 #include "problem_type/problem_type.hpp"
+#include "run/codimension_two_switch.hpp"
 #include "run/next_command.hpp"
 #include "setup/named_parameters.hpp"
 #include "text/words.hpp"
@@ -185,7 +186,7 @@ void CurveRounds::add_born_curves(const RunFiles& files, const Labelled& label, 
   const std::string name = fmt::format("{}_{}{}_born", files.name, label.type, label.label);
   for (const CurveCommand& command : born_curve_commands(label.start, files.settings, commands.problem(),
                                                          commands.path(files.name), commands.path(name))) {
-    next.push_back(candidate_at(files, label, has_returns, name + command.suffix, command, false));
+    next.push_back(candidate_at(files, label, has_returns, name + command.suffix, command, command.rests));
     next.back().is_born = true;
     next.back().is_alone = command.is_alone;
   }
@@ -222,7 +223,7 @@ std::string CurveRounds::curve_that_ends(const Candidate& candidate) const {
 /// Of a grazing curve the orbit at the label may be one that repeats.
 std::string CurveRounds::known_curve(const Candidate& candidate) const {
   if (candidate.is_slice) return "";
-  if (candidate.is_alone) return curve_that_ends(candidate);
+  if (candidate.is_born) return candidate.is_alone ? curve_that_ends(candidate) : "";
   if (candidate.curve.kind != "GR") return catalogue_.curve_at(candidate.curve.kind, candidate.start);
   for (const std::string& name : catalogue_.curves_through(candidate.start))
     if (const ExploredCurve* const curve = find_named(curves_.curves, name); curve != nullptr && curve->kind == "GR")
@@ -272,7 +273,7 @@ CurveRounds::Candidates CurveRounds::run(const Candidates& round) {
       context_.diagram.complete = false;
       continue;
     }
-    if (!results[i].succeeded && tried[i].is_born)
+    if (!results[i].succeeded && tried[i].is_born && results[i].log.find(no_curve_begins) != std::string::npos)
       curves_.without[failure_text(results[i].log)].push_back(tried[i].curve.origin);
     else if (!results[i].succeeded)
       curves_.failures.push_back(fmt::format("{} failed: {}", tried[i].name(), failure_text(results[i].log)));

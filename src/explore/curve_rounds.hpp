@@ -2,7 +2,8 @@
 /// directions in the rectangle, unless a curve that is there passes through it. Those without are listed with the
 /// reason. At grazing points with xi_n = 0 the orbits with one impact in n returns are followed over the first
 /// parameter, on both sides along the grazing curve; their special points have curves, too. A contact on a curve has
-/// its grazing curve.
+/// its grazing curve. At points of codimension two the curves that begin there are followed, and both Hopf curves
+/// through HH.
 ///
 /// Rounds of jobs, as in explorer.hpp.
 #pragma once

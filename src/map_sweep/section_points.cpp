@@ -110,8 +110,8 @@ std::vector<SectionPoints> of_sweep(const HybridSystem& system, const std::strin
   for (int k = 1; k <= system.dimension(); ++k) {
     const auto* column = table.state(k, states);
     if (column == nullptr)
-      throw UserError(
-          fmt::format("{}: its last columns are not {}; record states with --section", path, fmt::join(states, ", ")));
+      throw UserError(fmt::format("{}: it has not one column for each of {}; record states with --section", path,
+                                  fmt::join(states, ", ")));
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i].state(k - 1) = (*column)[i];
   }
   if (const auto* events = table.column("event"))

@@ -185,7 +185,7 @@ class PageBranchWriter {
     const PointSection& section = file_.sections[s];
     const std::optional<int> principal = section.parameter_of_column(0);
     if (!principal) return "";
-    return birth_words(label_type(section.rows[k].type), section.problem_type, section.curve_type != 0,
+    return birth_words(label_type(section.rows[k].type), section.problem_type, section.is_two_parameter_curve(),
                        section.parameter_name(*principal));
   }
 

@@ -1,6 +1,7 @@
 /// The problem types of equilibria (IPS = 1): branches in one parameter (bvp/equilibrium_system.hpp), curves of folds,
 /// Hopf bifurcations and boundary equilibria in two, and the switch at a branch point.
 #include <cmath>
+#include <optional>
 
 #include "bvp/equilibrium_fold.hpp"
 #include "bvp/equilibrium_system.hpp"
@@ -11,6 +12,7 @@
 #include "problem_types/problem_types.hpp"
 #include "run/branch_switch.hpp"
 #include "run/equilibrium_test_lists.hpp"
+#include "run/hopf_switch.hpp"
 #include "run/problem_row.hpp"
 #include "special_points/equilibrium_curve_tests.hpp"
 
@@ -51,8 +53,10 @@ BranchCurve fold(const EquilibriumSystem& system, const RunSettings&, const Sele
 
 /// Two curves cross at a double Hopf point: MODE chooses one.
 BranchCurve hopf(const EquilibriumSystem& system, const RunSettings& run, const SelectedStart& start) {
-  const int mode = start.type == static_cast<int>(PointType::double_hopf) ? run.mode : 0;
-  return curve_of(system, std::make_unique<HopfPair>(system, start.start.orbit.shape, mode), hopf_curve_tests);
+  std::optional<double> omega;
+  if (start.type == static_cast<int>(PointType::double_hopf))
+    omega = chosen_frequency(system, start.start.orbit, start, run.mode);
+  return curve_of(system, std::make_unique<HopfPair>(system, start.start.orbit.shape, omega), hopf_curve_tests);
 }
 
 /// The event function that is zero at a start: that of a BE label, elsewhere the monitored one nearest to zero. A BE

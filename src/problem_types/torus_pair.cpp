@@ -7,6 +7,7 @@
 #include "bvp/bordered_problem.hpp"
 #include "bvp/periodic_orbit_system.hpp"
 #include "problem_type/point_type.hpp"
+#include "run/branch_setup.hpp"
 #include "stability/floquet_multipliers.hpp"
 #include "start/start_selection.hpp"
 #include "text/user_error.hpp"
@@ -46,8 +47,8 @@ std::complex<double> pair_at(const DefiningSystem& defining, const SelectedStart
       if (const auto meeting = double_multiplier(multipliers); meeting != 0.0) nearest = meeting;
   }
   if (nearest == 0.0)
-    throw UserError(fmt::format("{}: label {} has no complex pair of multipliers, so no torus curve begins there",
-                                selected.source, selected.label));
+    throw NoCurveError(fmt::format("{}: label {} has no complex pair of multipliers, so no torus curve begins there",
+                                   selected.source, selected.label));
   return nearest;
 }
 

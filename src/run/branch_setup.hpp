@@ -14,6 +14,7 @@
 #include "continuation/path_follower.hpp"
 #include "run/branch_start.hpp"
 #include "run/test_lists.hpp"
+#include "text/user_error.hpp"
 
 namespace tchat {
 
@@ -48,6 +49,12 @@ struct BranchSetup {
   FirstPoint start = {};
   /// What is written as the constants of the run where these are not its settings: of a torus those of one return.
   std::optional<RunSettings> constants = {};
+};
+
+/// There is no curve of the kind at the start.
+class NoCurveError : public UserError {
+ public:
+  using UserError::UserError;
 };
 
 /// Gives the set-up, whose equations are there, a follower for solutions like `start`. Throws UserError when it would

@@ -17,6 +17,7 @@ struct FirstPoint {
   std::vector<NewtonIteration> correction;  ///< how the start was corrected
   std::string note;                         ///< what the user has to know of it, or empty
   bool stored_direction = false;            ///< DS > 0 goes on in the direction that is stored with the start
+  bool leaves_start = false;                ///< whatever the sign of DS, away from the start
 };
 
 /// Is the start a label of a branch point, of orbits or equilibria?

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "constants/settings_type.hpp"
 #include "problem_type/point_type.hpp"
@@ -46,49 +49,71 @@ BranchSetup orbit_beside(const HybridSystem& system, const RunSettings& settings
 }
 
 const ProblemType& type_of(PointType curve) {
-  for (const ProblemType* type : problem_types_of(orbit_curve.number, orbit_curve.branch_mode))
-    if (type->facts().curve == static_cast<int>(curve)) return *type;
-  return problem_type(orbit_curve.number, orbit_curve.branch_mode);
+  const std::vector<const ProblemType*> types = problem_types_of(orbit_curve.number, orbit_curve.branch_mode);
+  const auto found = std::find_if(types.begin(), types.end(), [curve](const ProblemType* type) {
+    return type->facts().curve == static_cast<int>(curve);
+  });
+  assert(found != types.end());
+  return **found;
+}
+
+[[noreturn]] void refuse_without_pair(const SelectedStart& selected) {
+  throw ComputationError(
+      fmt::format("{} {} of {}: the orbits that are born there have no complex pair of multipliers on the unit circle",
+                  no_curve_begins, selected.label, selected.source));
+}
+
+BranchSetup prepared(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected,
+                     const Orbit& beside, PointType curve) {
+  SelectedStart start = selected;
+  start.start = {beside, {}};
+  start.type = static_cast<int>(curve);
+  start.types = {start.type};
+  try {
+    return type_of(curve).prepare(system, settings, start);
+  } catch (const NoCurveError&) {
+    refuse_without_pair(selected);
+  }
 }
 
 /// The curve from the orbit `beside` on, of the same amplitude. Throws ComputationError where none is found.
 BranchSetup from_orbit(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected,
                        const PathPoint& beside, PointType curve) {
-  SelectedStart start = selected;
-  start.start = {beside.orbit, {}};
-  start.type = static_cast<int>(curve);
-  start.types = {start.type};
-  BranchSetup setup = type_of(curve).prepare(system, settings, start);
+  BranchSetup setup = prepared(system, settings, selected, beside.orbit, curve);
   OrbitVector direction = beside.tangent;
   direction.globals = Eigen::VectorXd::Zero(setup.defining->free_count());
   PathPoint point = setup.follower->make_point(beside.orbit);
   const NewtonResult result = setup.follower->start_along(point, direction);
-  if (!result.converged())
-    throw ComputationError(fmt::format("no point of the curve is found beside label {} of {}: {}; try another DS",
-                                       selected.label, selected.source, describe(result.status)));
-  if (!setup.follower->condition()->beyond_end().empty())
-    throw ComputationError(
-        fmt::format("no torus curve begins at label {} of {}: the orbits that are born there have "
-                    "no complex pair of multipliers on the unit circle",
-                    selected.label, selected.source));
-  if (setup.follower->alignment(point, direction) < 0.0) setup.follower->reverse(point);
-  setup.start = {std::move(point), setup.follower->newton().history(), {}, true};
+  const bool is_near = result.converged() && setup.follower->distance(beside.orbit, point.orbit) <= settings.step;
+  if (!is_near)
+    throw ComputationError(fmt::format(
+        "no point of the curve is found beside label {} of {}: {}; try another DS", selected.label, selected.source,
+        result.converged() ? "the next one is farther away than DS" : describe(result.status)));
+  if (!setup.follower->condition()->beyond_end().empty()) refuse_without_pair(selected);
+  setup.start = {std::move(point), setup.follower->newton().history(), {}, false, true};
   return setup;
 }
 
 /// One of the parameters may leave the orbits that are born where they are, at the label: then the other one is tried.
+/// What is told is that no curve begins, else what is wrong with the first one, whose order the user gave.
 BranchSetup begin_curve(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected,
                         PointType curve) {
-  const auto begin = [&](const RunSettings& in_order, bool is_exchanged) {
-    const BranchSetup beside = orbit_beside(system, in_order, selected);
-    const RunSettings of_curve = with_branch_mode(beside.settings, orbit_curve.branch_mode);
-    return from_orbit(system, is_exchanged ? exchanged(of_curve) : of_curve, selected, beside.start.point, curve);
+  std::string trouble;
+  const auto attempt = [&](bool is_exchanged) -> std::optional<BranchSetup> {
+    try {
+      const BranchSetup beside = orbit_beside(system, is_exchanged ? exchanged(settings) : settings, selected);
+      const RunSettings of_curve = with_branch_mode(beside.settings, orbit_curve.branch_mode);
+      return from_orbit(system, is_exchanged ? exchanged(of_curve) : of_curve, selected, beside.start.point, curve);
+    } catch (const ComputationError& error) {
+      const std::string why = error.what();
+      if (trouble.empty() || why.starts_with(no_curve_begins)) trouble = why;
+      return std::nullopt;
+    }
   };
-  try {
-    return begin(settings, false);
-  } catch (const ComputationError&) {
-    return begin(exchanged(settings), true);
-  }
+  std::optional<BranchSetup> setup = attempt(false);
+  if (!setup) setup = attempt(true);
+  if (!setup) throw ComputationError(trouble);
+  return std::move(*setup);
 }
 
 }  // namespace

@@ -1,18 +1,23 @@
 /// ISW = -1 at a point of codimension two: the curve in two parameters that begins there, of orbits that are born there
 /// (Kuznetsov, Elements of Applied Bifurcation Theory, sections 8.3, 8.5, 8.6, 9.4, 9.5).
 ///
-///     GPD     folds of doubled orbits            GH        folds of periodic orbits
-///     R2      torus bifurcations of doubled orbits   ZH, HH    torus bifurcations of periodic orbits
+///     GPD       folds of doubled orbits
+///     R2        torus bifurcations of doubled orbits
+///     GH        folds of periodic orbits
+///     ZH, HH    torus bifurcations of periodic orbits
 ///
-/// Near the point the curve is x = x* + e d + O(e^2), parameters = those of the point + O(e^2), with d the critical
-/// direction of the period doubling or the oscillation. An orbit of amplitude e = |DS| is found first, with the other
-/// amplitudes and parameters free that one parameter leaves (branch_switch.hpp, hopf_switch.hpp); it is corrected onto
-/// the curve on the plane across d, which keeps e. The branch is then that of ISW = 2.
+/// Near the point the curve is x = x* + e d + O(e^2), with parameters that are those of the point + O(e^2), where d is
+/// the critical direction of the period doubling, or the oscillation. An orbit of amplitude e, |DS| or less, is found
+/// first, with one parameter free (branch_switch.hpp, hopf_switch.hpp). It is corrected onto the curve on the plane
+/// across d, so that e stays: n m + m + 2 unknowns, the conditions of an orbit, that of the curve and the plane.
 #pragma once
 
 #include "run/branch_setup.hpp"
 
 namespace tchat {
+
+/// How the message begins where the orbits that are born have no pair of multipliers for a torus curve.
+inline constexpr const char* no_curve_begins = "no torus curve begins at label";
 
 /// Folds. Throws UserError where the label cannot be left so (begin_periodic_orbits(), switch_branch()),
 /// ComputationError when no orbit, or none of the curve, is found near the label.

@@ -114,32 +114,6 @@ bool is_label(const SelectedStart& selected, PointType type) {
   return label_type(selected.type) == static_cast<int>(type);
 }
 
-/// Where a function is conserved pairs are on the imaginary axis for all values of the parameters (Lyapunov's
-/// families), at a double Hopf point two are: MODE chooses one.
-Oscillation chosen_oscillation(const DefiningSystem& equilibria, const Orbit& x, const SelectedStart& selected,
-                               int mode) {
-  const std::vector<Complex> eigenvalues = equilibrium_eigenvalues(equilibria, x).values;
-  double largest = 0.0;
-  for (const Complex& value : eigenvalues) largest = std::max(largest, std::abs(value));
-  constexpr double zero = 1e-7;  // of the largest: a double zero is computed to the root of rounding
-  std::vector<double> omegas;
-  for (const Complex& value : eigenvalues)
-    if (value.imag() > zero * largest && std::abs(value.real()) <= on_axis * value.imag())
-      omegas.push_back(value.imag());
-  std::sort(omegas.begin(), omegas.end());
-  if (omegas.empty())
-    throw UserError(
-        fmt::format("{}: label {} has no oscillation for a family of orbits to start with: no eigenvalue of f_x is on "
-                    "the imaginary axis there ({})",
-                    selected.source, selected.label, eigenvalue_list(eigenvalues)));
-  if (static_cast<std::size_t>(mode) > omegas.size())
-    throw UserError(fmt::format("{}: MODE = {}, but label {} has {} oscillation{} (omega = {:.6g}); allowed: {}",
-                                selected.source, mode, selected.label, omegas.size(), omegas.size() == 1 ? "" : "s",
-                                fmt::join(omegas, ", "),
-                                omegas.size() == 1 ? "1" : fmt::format("1 to {}", omegas.size())));
-  return oscillation_of(equilibria, x, omegas[static_cast<std::size_t>(mode - 1)]);
-}
-
 /// The equilibrium of the label, corrected; at a zero-Hopf point, where f_x is singular, as it is stored.
 Orbit equilibrium_of(const EquilibriumSystem& equilibria, const RunSettings& settings, const SelectedStart& selected) {
   if (is_label(selected, PointType::zero_hopf)) return selected.start.orbit;
@@ -191,6 +165,31 @@ std::optional<FirstPoint> first_orbit(PathFollower& follower, const Orbit& still
 
 }  // namespace
 
+/// Where a function is conserved pairs are on the imaginary axis for all values of the parameters (Lyapunov's
+/// families), at a double Hopf point two are: MODE chooses one.
+double chosen_frequency(const DefiningSystem& equilibria, const Orbit& x, const SelectedStart& selected, int mode) {
+  const std::vector<Complex> eigenvalues = equilibrium_eigenvalues(equilibria, x).values;
+  double largest = 0.0;
+  for (const Complex& value : eigenvalues) largest = std::max(largest, std::abs(value));
+  constexpr double zero = 1e-7;  // of the largest: a double zero is computed to the root of rounding
+  std::vector<double> omegas;
+  for (const Complex& value : eigenvalues)
+    if (value.imag() > zero * largest && std::abs(value.real()) <= on_axis * value.imag())
+      omegas.push_back(value.imag());
+  std::sort(omegas.begin(), omegas.end());
+  if (omegas.empty())
+    throw UserError(
+        fmt::format("{}: label {} has no oscillation for a family of orbits to start with: no eigenvalue of f_x is on "
+                    "the imaginary axis there ({})",
+                    selected.source, selected.label, eigenvalue_list(eigenvalues)));
+  if (static_cast<std::size_t>(mode) > omegas.size())
+    throw UserError(fmt::format("{}: MODE = {}, but label {} has {} oscillation{} (omega = {:.6g}); allowed: {}",
+                                selected.source, mode, selected.label, omegas.size(), omegas.size() == 1 ? "" : "s",
+                                fmt::join(omegas, ", "),
+                                omegas.size() == 1 ? "1" : fmt::format("1 to {}", omegas.size())));
+  return omegas[static_cast<std::size_t>(mode - 1)];
+}
+
 BranchSetup begin_periodic_orbits(const HybridSystem& system, const RunSettings& settings,
                                   const SelectedStart& selected) {
   if (selected.start.orbit.shape.stored_nodes() > 1)
@@ -204,8 +203,9 @@ BranchSetup begin_periodic_orbits(const HybridSystem& system, const RunSettings&
   const EquilibriumSystem equilibria(system, before.signature(), free_problem_parameters(before));
   const Orbit x = equilibrium_of(equilibria, before, selected);
   const bool has_several = !settings.conserved.empty() || is_label(selected, PointType::double_hopf);
-  Oscillation oscillation = has_several ? chosen_oscillation(equilibria, x, selected, settings.mode)
-                                        : oscillation_at(equilibria, x, selected);
+  Oscillation oscillation =
+      has_several ? oscillation_of(equilibria, x, chosen_frequency(equilibria, x, selected, settings.mode))
+                  : oscillation_at(equilibria, x, selected);
   const int event = settings.segments.front().index.event;
   if (event != no_function) begin_on_section(system, event, x, selected, oscillation.vector);
 

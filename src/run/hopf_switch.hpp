@@ -20,4 +20,8 @@ namespace tchat {
 BranchSetup begin_periodic_orbits(const HybridSystem& system, const RunSettings& settings,
                                   const SelectedStart& selected);
 
+/// omega of the oscillation that MODE chooses, 1: the slowest. Throws UserError where there are not so many, with a
+/// list.
+double chosen_frequency(const DefiningSystem& equilibria, const Orbit& x, const SelectedStart& selected, int mode);
+
 }  // namespace tchat

@@ -134,20 +134,22 @@ bool is_boundary_of_curve(const NextStart& start, const RunSettings& settings) {
 /// Of a label on a curve: the name of the other curve that goes through it; "" where there is none.
 std::string crossing_curve(const NextStart& start, const RunSettings& settings) {
   const ProblemFacts& facts = problem_type(settings).facts();
-  if (!facts.in_two_parameters) return "";
-  for (const PointType other : curves_through(start.type))
+  const std::vector<PointType> meeting = curves_through(start.type);
+  const bool is_one =
+      std::any_of(meeting.begin(), meeting.end(), [&](PointType one) { return static_cast<int>(one) == facts.curve; });
+  if (!is_one || settings.branch_mode != orbit_curve.branch_mode || !settings.held.empty()) return "";
+  for (const PointType other : meeting)
     if (const int type = static_cast<int>(other);
         type != facts.curve && curve_of(type, settings.problem_type) != nullptr)
       return curve_name(settings.problem_type, type);
   return "";
 }
 
-/// Words of `tchat run` that follow from a label of a curve the one that begins there, or another one that goes through
-/// it; "" where there is none.
+/// Words of `tchat run` that follow from a label of a curve another one that goes through it, or one that begins there;
+/// "" where there is none.
 std::string words_on_curve(const NextStart& start, const RunSettings& settings) {
-  if (const std::string words = birth_words(start.type, settings.problem_type, true, ""); !words.empty()) return words;
-  const std::string name = crossing_curve(start, settings);
-  return name.empty() ? "" : " CURVE=" + name;
+  if (const std::string name = crossing_curve(start, settings); !name.empty()) return " CURVE=" + name;
+  return settings.held.empty() ? birth_words(start.type, settings.problem_type, true, "") : "";
 }
 
 /// Why ISW = 2 and two parameters do not follow the points of a label; "" where they do.
@@ -165,9 +167,9 @@ std::string why_no_curve(const NextStart& start, const RunSettings& settings) {
   const bool has_one = is_contact || kind == UserPointKind::none;
   if (has_one && curve_of(is_contact ? -start.type : start.type, settings.problem_type) != nullptr) return "";
   if (start.type == static_cast<int>(PointType::equilibrium_branch_point))
-    return "when a second parameter changes, the branches that cross at a BP of equilibria part, unless a symmetry or "
-           "an invariant set keeps the BP; exploring at another value of that parameter shows the BP, or folds, which "
-           "have curves, or neither";
+    return "the branches that cross at a BP of equilibria part when a second parameter changes, unless a symmetry or "
+           "an "
+           "invariant set keeps the BP: explore at another value of that parameter";
   return fmt::format("ISW = 2 does not follow {} of {}", name, type.facts().solutions);
 }
 
@@ -252,18 +254,23 @@ std::vector<CurveCommand> born_curve_commands(const NextStart& start, const RunS
   const ProblemType* const type = birth_type(start.type, settings.problem_type, true);
   const bool begins = type != nullptr && type->facts().curve > 0;  // at a BP, a curve of the same kind crosses
   if (!problem_type(settings).facts().in_two_parameters || !begins) return {};
-  const std::string run = fmt::format("tchat run {} -c {} -s {} IRS={}{}", problem_arguments(problem),
-                                      quoted_for_shell(output_path('r', output)), quoted_for_shell(output), start.label,
-                                      birth_words(start.type, settings.problem_type, true, ""));
+  const std::string from_label =
+      fmt::format("tchat run {} -c {} -s {} IRS={}", problem_arguments(problem),
+                  quoted_for_shell(output_path('r', output)), quoted_for_shell(output), start.label);
+  const std::string run = from_label + birth_words(start.type, settings.problem_type, true, "");
   const std::string kind = type_name(type->facts().curve);
   const bool is_alone =
       start.type != static_cast<int>(PointType::resonance_2);  // there that of the shorter orbits ends
   if (start.type != static_cast<int>(PointType::double_hopf))
     return {{fmt::format("{} -o {}", run, quoted_for_shell(curve)), "", kind, "", is_alone}};
-  std::vector<CurveCommand> both;
-  for (const char* const mode : {"1", "2"})
-    both.push_back({fmt::format("{} MODE={} -o {}", run, mode, quoted_for_shell(curve + mode)), "", kind, mode});
-  return both;
+  std::vector<CurveCommand> all;
+  for (const std::string mode : {"1", "2"}) {
+    const std::string rest = "_hopf" + mode;
+    all.push_back({fmt::format("{} MODE={} -o {}", run, mode, quoted_for_shell(curve + mode)), "", kind, mode});
+    all.push_back({fmt::format("{} ISW=2 MODE={} -o {}", from_label, mode, quoted_for_shell(curve + rest)), "",
+                   type_name(static_cast<int>(PointType::hopf)), rest, false, true});
+  }
+  return all;
 }
 
 }  // namespace tchat

@@ -35,6 +35,7 @@ struct CurveCommand {
   std::string kind;      ///< name of the points that the curve consists of
   std::string suffix = {};  ///< behind the name of its files, where several begin
   bool is_alone = false;    ///< the only curve of its kind that may end at the label
+  bool rests = false;       ///< it consists of equilibria
 };
 
 /// To files of the name `curve`. A grazing contact is cut first (tchat resegment); one that changes nothing, in
@@ -43,8 +44,8 @@ struct CurveCommand {
 CurveCommand curve_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
                            const std::string& problem, const std::string& output, const std::string& curve);
 
-/// The curves in two parameters that begin at a label of a curve, to files of the name `curve` with their suffix. Empty
-/// where none begins.
+/// The curves in two parameters that begin at a label of a curve, to files of the name `curve` with their suffix, and
+/// both Hopf curves through HH. Empty where none begins.
 std::vector<CurveCommand> born_curve_commands(const NextStart& start, const RunSettings& settings,
                                               const std::string& problem, const std::string& output,
                                               const std::string& curve);

@@ -93,7 +93,7 @@ inline std::vector<PointType> branch_switch_labels() {
   return {PointType::period_doubling, PointType::branch_point, PointType::equilibrium_branch_point};
 }
 
-/// A type that goes on, from a label, as the type of ISW = 1 and the same IPS.
+/// A type that goes on, from a label, as another type of the same IPS.
 class SwitchRow final : public ProblemType {
  public:
   using SetUp = BranchSetup (*)(const HybridSystem&, const RunSettings&, const SelectedStart&);
@@ -112,7 +112,12 @@ class SwitchRow final : public ProblemType {
   }
 
  private:
-  const ProblemType& followed() const { return problem_type(facts().number, 1); }
+  /// The type of the curve that begins at the label, else that of ISW = 1.
+  const ProblemType& followed() const {
+    for (const ProblemType* type : problem_types_of(facts().number, orbit_curve.branch_mode))
+      if (facts().curve != 0 && type->facts().curve == facts().curve) return *type;
+    return problem_type(facts().number, 1);
+  }
 
   std::vector<PointType> starts_at_;
   SetUp set_up_;

@@ -92,8 +92,9 @@ std::string special_start_text(const ProblemType& type, const SelectedStart& sta
                      start.label, start.source, fmt::join(names, " "));
 }
 
-/// Where a restart goes, for the sign of DS alone does not tell it.
+/// Where a restart goes, for the sign of DS alone does not tell it. A curve that begins at the start leaves it.
 std::string direction_text(const BranchSetup& setup, const SelectedStart& start, const std::string& parameter) {
+  if (setup.start.leaves_start) return "";
   const double step = setup.settings.step;
   const char* const sign = step > 0.0 ? ">" : "<";
   if (setup.start.stored_direction)

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <memory>
@@ -110,21 +111,23 @@ class CubicTermTest final : public TestFunction {
 };
 
 /// GPD on a curve of folds of doubled orbits: the halves of the orbits meet, and beyond they are exchanged. A sum of
-/// the differences of states at the starts of segments goes through zero there with all of them. The curve of period
+/// the differences of states where the halves begin goes through zero there with all of them. The curve of period
 /// doublings crosses, as its orbits twice over are folds of doubled orbits too.
 class HalvesMeetTest final : public TestFunction {
  public:
+  /// `segments`: of the signature; a single one without a section is halved in time.
+  explicit HalvesMeetTest(int segments) : segments_(segments) {}
   std::string name() const override { return type_name(static_cast<int>(PointType::doubled_fold_end)); }
   TestValue evaluate(const TestedPoint& point) const override {
     double sum = 0.0;
     double weight = 1.0;
-    for_differences(point.orbit, [&](double difference) { sum += std::cos(weight++) * difference; });
+    for_differences(point, [&](double difference) { sum += std::cos(weight++) * difference; });
     return TestValue::of(sum / (1.0 + largest_state(point.orbit)), orbit_accuracy);
   }
   bool is_genuine(const TestedPoint& point) const override {
     constexpr double met = 1e-4;
     double largest = 0.0;
-    for_differences(point.orbit, [&](double difference) { largest = std::max(largest, std::abs(difference)); });
+    for_differences(point, [&](double difference) { largest = std::max(largest, std::abs(difference)); });
     return largest <= met * (1.0 + largest_state(point.orbit));
   }
   SpecialPoint classify(const TestedPoint&, bool) const override {
@@ -134,15 +137,32 @@ class HalvesMeetTest final : public TestFunction {
  private:
   static double largest_state(const Orbit& x) { return x.states.cwiseAbs().maxCoeff(); }
   template <class Work>
-  static void for_differences(const Orbit& x, const Work& work) {
-    const int half = x.shape.segments / 2;
+  void for_differences(const TestedPoint& point, const Work& work) const {
+    const Orbit& x = point.orbit;
+    const int half = segments_ / 2;
     for (int s = 0; s < half; ++s)
       for (int a = 0; a < x.shape.dimension; ++a) work(x.node(s, 0)[a] - x.node(half + s, 0)[a]);
+    if (half == 0)
+      for (int a = 0; a < x.shape.dimension; ++a) work(x.node(0, 0)[a] - halfway(x, point.condensed.rule(), a));
   }
+  /// State a at half the duration of the one segment.
+  static double halfway(const Orbit& x, const CollocationRule& rule, int a) {
+    const double* const mesh = x.mesh_of(0);
+    const int intervals = x.shape.intervals_of(0), c = x.shape.collocation;
+    const auto j = static_cast<int>(std::upper_bound(mesh, mesh + intervals, 0.5) - mesh) - 1;
+    std::array<double, CollocationRule::most_points + 1> basis{};
+    rule.basis((0.5 - mesh[j]) / (mesh[j + 1] - mesh[j]), basis.data(), nullptr);
+    double value = 0.0;
+    for (int i = 0; i <= c; ++i) value += basis[static_cast<std::size_t>(i)] * x.node(0, j * c + i)[a];
+    return value;
+  }
+
+  int segments_;
 };
 
-/// Is the second half of the signature the first one again?
-bool is_repeated(const Signature& signature) {
+/// May the orbits be doubled ones: is the second half of the signature the first one again, or is there no section?
+bool may_be_doubled(const Signature& signature) {
+  if (signature.size() == 1) return signature.front().event == no_function;
   const auto half = static_cast<std::ptrdiff_t>(signature.size() / 2);
   return signature.size() % 2 == 0 && std::equal(signature.begin(), signature.begin() + half, signature.begin() + half);
 }
@@ -151,7 +171,7 @@ bool is_repeated(const Signature& signature) {
 
 TestList fold_curve_meetings(const DefiningSystem& system) {
   TestList tests;
-  if (is_repeated(system.signature())) tests.push_back(std::make_unique<HalvesMeetTest>());
+  if (may_be_doubled(system.signature())) tests.push_back(std::make_unique<HalvesMeetTest>(system.segments()));
   tests.push_back(std::make_unique<SecondMultiplierTest>(PointType::fold_and_doubling, -1));
   tests.push_back(std::make_unique<SecondPairTest>(PointType::fold_and_torus));
   return tests;

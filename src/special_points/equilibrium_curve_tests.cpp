@@ -35,11 +35,9 @@ Eigenvalues without_nearest(Eigenvalues values, std::complex<double> known) {
 Eigenvalues without_zero(const Eigenvalues& values) { return without_nearest(values, 0.0); }
 
 /// Without the pair that is on the imaginary axis on a Hopf curve.
-Eigenvalues without_pair(Eigenvalues values) {
-  const EigenvaluePair pair = hopf_pairs(values).nearest;
-  for (const auto& value : {pair.first, pair.second})
-    if (const auto at = std::find(values.begin(), values.end(), value); at != values.end()) values.erase(at);
-  return values;
+Eigenvalues without_pair(const Eigenvalues& values, const HopfPair& pair) {
+  const std::complex<double> own = std::sqrt(std::complex<double>(-pair.square()));
+  return without_nearest(without_nearest(values, own), -own);
 }
 
 /// CP: w^T f_xx v v = 0 on a fold curve.
@@ -199,10 +197,7 @@ class DoubleHopfTest final : public OtherPairTest {
   }
 
  private:
-  Eigenvalues other_eigenvalues(const Eigenvalues& all) const override {
-    const std::complex<double> own = std::sqrt(std::complex<double>(-pair_.square()));
-    return without_nearest(without_nearest(all, own), -own);
-  }
+  Eigenvalues other_eigenvalues(const Eigenvalues& all) const override { return without_pair(all, pair_); }
 
   const HopfPair& pair_;
 };
@@ -213,7 +208,7 @@ class HopfFoldTest final : public TestFunction {
   explicit HopfFoldTest(const HopfPair& pair) : pair_(pair) {}
   std::string name() const override { return "zero-Hopf"; }
   TestValue evaluate(const TestedPoint& point) const override {
-    const Eigenvalues others = without_pair(point.multipliers.values);
+    const Eigenvalues others = without_pair(point.multipliers.values, pair_);
     if (!point.multipliers.valid || others.empty()) return TestValue::undefined();
     return TestValue::of(signed_least(others, largest_modulus(point.multipliers.values)), orbit_accuracy);
   }

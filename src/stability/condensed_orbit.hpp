@@ -13,8 +13,8 @@ namespace tchat {
 
 class CondensedOrbit {
  public:
-  /// For orbits of this shape, which have segments with one mesh in common, with the multiplier `critical`, 1, -1 or
-  /// e^(i theta), or nearly.
+  /// For orbits of this shape, which have segments with one mesh in common, that nearly have the multiplier
+  /// `critical`: exactly 1, exactly -1, or e^(i theta).
   CondensedOrbit(const DefiningSystem& system, const OrbitShape& shape, std::complex<double> critical);
 
   /// At x, which stays as it is until the last call of forms(). False where the equations are singular or not finite.

@@ -35,7 +35,6 @@ double shift_for(std::complex<double> critical);
 
 /// Interpolated.
 Orbit on_every_second_point(const Orbit& x);
-/// By a change of the nodes and durations, and of one of the free parameters.
-void move_orbit(const DefiningSystem& system, Orbit& x, const Eigen::VectorXd& change, double dp,
-                Eigen::Index parameter = 0);
+/// By a change of the nodes and durations, and of the first free parameter.
+void move_orbit(const DefiningSystem& system, Orbit& x, const Eigen::VectorXd& change, double dp);
 }  // namespace tchat

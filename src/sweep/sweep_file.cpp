@@ -224,11 +224,16 @@ const std::vector<double>* SweepTable::column(const std::string& name) const {
 }
 
 const std::vector<double>* SweepTable::state(int k, const std::vector<std::string>& state_names) const {
-  if (columns.size() < state_names.size()) return nullptr;
-  const std::size_t before = columns.size() - state_names.size();
-  for (std::size_t i = 0; i < state_names.size(); ++i)
-    if (names[before + i] != sweep_column(state_names[i])) return nullptr;
-  return &columns[before + static_cast<std::size_t>(k) - 1];
+  const auto index = static_cast<std::size_t>(k) - 1;
+  const std::size_t before = columns.size() - std::min(columns.size(), state_names.size());
+  const auto is_state = [](const std::string& heading, const std::string& name) {
+    return heading == sweep_column(name);
+  };
+  if (std::equal(names.begin() + static_cast<std::ptrdiff_t>(before), names.end(), state_names.begin(),
+                 state_names.end(), is_state))
+    return &columns[before + index];
+  const std::string wanted = sweep_column(state_names[index]);
+  return std::count(names.begin(), names.end(), wanted) == 1 ? column(state_names[index]) : nullptr;
 }
 
 std::string sweep_heading(const SweepTable& table) {

@@ -312,7 +312,7 @@ TEST_CASE("a map: folds of doubled orbits begin at generalised period doubling")
   workspace.write("map.tch",
                   "par p=-0.3, q=0.3\ninit x=0.01\nx' = 0\nphi' = 1\nevent turn = 1 - phi\n"
                   "jump back: x -> -(1+p)*x + q*x^3 + x^5, phi -> phi - 1\nafter any: turn -> back\n");
-  const Outcome outcome = workspace.tchat("explore map --over p=-0.3:0.1:21 --and q=-0.5:0.5 CUBIC=1 -o m -j 2 -q");
+  const Outcome outcome = workspace.tchat("explore map --over p=-0.3:0.1:21 --and q=-0.5:0.5 -o m -j 2 -q");
   INFO(outcome.text());
   REQUIRE(outcome.status == 0);
   const std::string tree = workspace.read("m.txt");
@@ -322,6 +322,27 @@ TEST_CASE("a map: folds of doubled orbits begin at generalised period doubling")
     CHECK(point.first == Approx(-0.25 * point.second * point.second).margin(1e-8));
     CHECK(point.second < 0.0);
   }
+}
+
+TEST_CASE("a map: torus bifurcations of orbits and of doubled orbits end at a 1:2 resonance") {
+  // Fixed points have the determinant 1 + p - q, doubled orbits 1 + p + (2 + d / c) q with d / c = -5/3 (q > 0).
+  const Workspace workspace;
+  workspace.write("map.tch",
+                  "par p=-0.3, q=-0.2\ninit x=0.01, y=0\nx' = 0\ny' = 0\nphi' = 1\nevent turn = 1 - phi\n"
+                  "jump back: x -> -x + y, y -> -(1+p)*y + q*x - 0.3*x^3 + 0.5*x^2*y, phi -> phi - 1\n"
+                  "after any: turn -> back\n");
+  const Outcome outcome = workspace.tchat("explore map --over q=-0.2:0.2:21 --and p=-0.5:0.5 -o m -j 2 -q");
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  const std::string tree = workspace.read("m.txt");
+  INFO(tree);
+  CHECK(count_of(tree, "TR") == 2);
+  const auto points = [&](const std::string& name) { return inner_points(workspace.file("m/p." + name), "p"); };
+  const std::size_t end = tree.find("_born  TR curve from R2");
+  REQUIRE(end != std::string::npos);
+  const std::size_t begin = tree.rfind('\n', end) + 1;
+  for (const Place& point : points(tree.substr(begin, end - begin) + "_born"))
+    CHECK(point.second == Approx(-point.first / 3.0).margin(1e-8));
 }
 
 TEST_CASE("second ranges that are none are refused with the form") {

@@ -151,6 +151,8 @@ TEST_CASE("generalised period doubling, and the folds of doubled orbits that beg
   check_curve(workspace, "folds", folds);
   check_place(workspace, "folds", "GPD", 0.0, 0.0);
   CHECK(workspace.solutions("folds").back().type == -51);  // beyond it the curve comes back
+  CHECK(workspace.tchat("run map -c r.doublings -s doublings -o born IRS=GPD1 ISW=-1 DS=-0.01 NMX=2").out.find("DS ") ==
+        std::string::npos);  // whatever its sign, it leads away
   begin(workspace, "born", "doublings", "GPD1", "0.01");
   check_curve(workspace, "born", folds);
   CHECK(workspace.solutions("born").back().parameter(2) < -0.4);
@@ -321,7 +323,11 @@ v' = (q + 0.4*r - s)*v + u
   begin(workspace, "slow", "hopf", "HH1", "0.05", "IPS=180 MODE=1");
   check_curve(workspace, "slow", [](double q) { return 0.3 * q; });
   workspace.succeed("run map -q -c r.hopf -s hopf -o other IRS=HH1 MODE=1 ICP=[p,q] DS=0.02 NMX=20 NPR=1");
-  for (const SolutionEntry& point : workspace.solutions("other")) CHECK(std::abs(point.parameter(2)) < accuracy);
+  const std::vector<SolutionEntry> other = workspace.solutions("other");
+  REQUIRE(other.size() > 10);
+  for (const SolutionEntry& point : other) CHECK(std::abs(point.parameter(2)) < accuracy);
+  CHECK(workspace.tchat("run map -c r.hopf -s hopf -o none IRS=HH1 ISW=2 MODE=3").err.find("MODE = 3") !=
+        std::string::npos);
 }
 
 TEST_CASE("a curve of torus bifurcations begins at a zero-Hopf point") {
