@@ -243,6 +243,17 @@ TEST_CASE("a table made before four points could be side by side still loads") {
   CHECK_FALSE(library.system().has_first_in_lanes());
 }
 
+TEST_CASE("a table made before third derivatives could be asked for at many points still loads") {
+  const PluginFolder folder;
+  // What stands behind its end is not part of it.
+  const std::string spoil = R"(
+  table.struct_size = TCHAT_PROBLEM_EIGHTH_SIZE;
+  table.third_at_points = reinterpret_cast<decltype(table.third_at_points)>(table.value);
+)";
+  const ProblemLibrary library(resolve_plugin(folder.write("eighth.cpp", small_plugin(spoil)), build_options));
+  CHECK(library.system().table().third_at_points == nullptr);
+}
+
 TEST_CASE("an exception on the way through points side by side makes all of them NaN") {
   const PluginFolder folder;
   const std::string spoil = R"(
