@@ -130,7 +130,7 @@ std::vector<CurveRounds::Labelled> CurveRounds::labels_of(const RunFiles& files)
     Labelled one;
     one.label = solution.label;
     one.type = type;
-    one.start = {solution.label, label_type(solution.type), solution.kind};
+    one.start = {solution.label, label_type(solution.type), solution.kind, curve_type(solution.type)};
     one.xi_zeros = xi_zeros(solution);
     one.first = stored_parameter(solution, principal);
     one.second = stored_parameter(solution, commands_.second_index());

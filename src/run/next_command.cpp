@@ -133,14 +133,12 @@ bool is_boundary_of_curve(const NextStart& start, const RunSettings& settings) {
 
 /// Of a label on a curve: the name of the other curve that goes through it; "" where there is none.
 std::string crossing_curve(const NextStart& start, const RunSettings& settings) {
-  const ProblemFacts& facts = problem_type(settings).facts();
   const std::vector<PointType> meeting = curves_through(start.type);
-  const bool is_one =
-      std::any_of(meeting.begin(), meeting.end(), [&](PointType one) { return static_cast<int>(one) == facts.curve; });
+  const auto is_own = [&](PointType one) { return static_cast<int>(one) == start.curve; };
+  const bool is_one = std::any_of(meeting.begin(), meeting.end(), is_own);
   if (!is_one || settings.branch_mode != orbit_curve.branch_mode || !settings.held.empty()) return "";
   for (const PointType other : meeting)
-    if (const int type = static_cast<int>(other);
-        type != facts.curve && curve_of(type, settings.problem_type) != nullptr)
+    if (const int type = static_cast<int>(other); !is_own(other) && curve_of(type, settings.problem_type) != nullptr)
       return curve_name(settings.problem_type, type);
   return "";
 }

@@ -15,6 +15,7 @@ struct NextStart {
   int label = 0;
   int type = 0;  ///< label_type() of its number in files
   UserPointKind kind;
+  int curve = 0;  ///< curve_type() of its number in files; 0: of no curve in two parameters
 };
 
 /// A line for the shell: at a bifurcation a run on the branch that is born there, at a fold the curve of folds in two

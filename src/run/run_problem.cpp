@@ -326,7 +326,8 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
                       reports.table, reports.table != nullptr ? progress : nullptr);
 
   const NextCommand next = [&](const BranchWriter::Labelled& label) {
-    return next_command({label.label, label.number, label.kind}, constants, system, problem.name, output);
+    return next_command({label.label, label.number, label.kind, setup.type->facts().curve}, constants, system,
+                        problem.name, output);
   };
   int status = 0;
   bool closed = false;

@@ -248,9 +248,8 @@ TEST_CASE("predators and prey: Hopf, boundary and grazing curve end or cross whe
   const double d = std::sqrt(1.0 - 1.0 / predators_on_surface);  // both
   check_meeting(tree, {(1.0 + d) / (1.0 - d), d}, {{hopf, "BE"}, {boundary, "HB"}, {grazing, "HB"}}, 1e-6);
   CHECK(tree.find("HB 4 at 3, curve " + hopf) != std::string::npos);  // where the cycles shrink
-  CHECK(
-      tree.find("Without a curve: BP 2 of a1, BP 5 of a2: when a second parameter changes, the branches that cross at "
-                "a BP of equilibria part, unless a symmetry or an invariant set keeps the BP") != std::string::npos);
+  CHECK(tree.find("Without a curve: BP 2 of a1, BP 5 of a2: the branches that cross at a BP of equilibria part when a "
+                  "second parameter changes, unless a symmetry or an invariant set keeps the BP") != std::string::npos);
   // Here the BP persists, as prey alone is an invariant set: at another d, K = d / (1 - d).
   REQUIRE(workspace.tchat("explore predator --over K=0.5:2:16 PAR(d)=0.6 --state 0.5,0.3 -o other -q").status == 0);
   CHECK(workspace.read("other.txt").find("BP 2 at 1.5 ->") != std::string::npos);
