@@ -132,11 +132,11 @@ class Runs:
         return Printed(float(found.group(1)), float(found.group(2)), sentence) if found else Printed(None, None,
                                                                                                    sentence)
 
-
-    def why_no_sentence(self, name):
+    def why_no_fit(self, name):
+        """Where a quantity is kept, parameters change with the amplitude itself, not with its square; else ""."""
         text = open(os.path.join(self.folder, "r." + name)).read()
         held = re.search(r"^(HOLD = (?!\[\])|CONSERVED = \S).*", text, re.M)
-        return "the family keeps a quantity: " + held.group(0) if held else "NO SENTENCE, AND NO REASON FOR IT"
+        return "the family keeps a quantity: " + held.group(0) if held else ""
 
 
 def first_parameter(row):
@@ -551,9 +551,15 @@ def measure(label):
 def check(label, counts):
     where = "%s/%s %s%d" % (os.path.basename(label.runs.folder), label.source, label.kind, label.row["label"])
     counts[label.kind] += 1
+    why_no_fit = label.runs.why_no_fit(label.source)
     if label.printed.value is None:
-        print("%s: not measured: %s" % (where, label.printed.sentence or label.runs.why_no_sentence(label.source)))
+        why = label.printed.sentence or why_no_fit or "NO SENTENCE, AND NO REASON FOR IT"
+        print("%s: not measured: %s" % (where, why))
         counts["without a coefficient"] += 1
+        return
+    if why_no_fit:
+        print("%s: %.10g: not measured: %s" % (where, label.printed.value, why_no_fit))
+        counts["not measured"] += 1
         return
     try:
         measurements, simulated = measure(label)
