@@ -63,9 +63,8 @@ class SimulationBeside : public MotionBeside {
 
   VectorXd range() const override { return high_ - low_; }
   double time() const override { return time_; }
-  ChaosEvidence ended() const override {
-    return {false, was_interrupted_, "a motion that begins beside it has ended: " + message_};
-  }
+  std::string why_ended() const override { return message_; }
+  bool was_interrupted() const override { return was_interrupted_; }
 
  private:
   LyapunovSettings of_window() const {
@@ -89,6 +88,10 @@ VectorXd on_event(const HybridSimulation& motion, const VectorXd& end, const Vec
   const EventAt at = event_at(motion.system(), last.event, last.field, end.data(), motion.parameters().data());
   const VectorXd projected = at.project(change);
   return end + (projected.allFinite() ? projected : change);
+}
+
+ChaosEvidence evidence_of_end(const MotionBeside& motion) {
+  return {false, motion.was_interrupted(), "a motion that begins beside it has ended: " + motion.why_ended()};
 }
 
 }  // namespace
@@ -131,18 +134,18 @@ VectorXd push_along(const VectorXd& direction, const VectorXd& range) {
 ChaosEvidence chaos_evidence(const std::function<std::unique_ptr<MotionBeside>(const VectorXd&)>& begin_beside,
                              const VectorXd& direction, double rate) {
   const std::unique_ptr<MotionBeside> beside = begin_beside(VectorXd::Zero(direction.size()));
-  if (!beside->pass(first_window, nullptr)) return beside->ended();
+  if (!beside->pass(first_window, nullptr)) return evidence_of_end(*beside);
   const double events_before = ChaosJudge::growth_before / rate * static_cast<double>(first_window) / beside->time();
   if (!(events_before <= static_cast<double>(most_events)))
     return {false, false,
             fmt::format("a distance grows {:.2g}-fold in {} events only, as where a motion leaves something unstable",
                         std::exp(rate * beside->time() * most_events / first_window), most_events)};
   const std::unique_ptr<MotionBeside> pushed = begin_beside(push_along(direction, beside->range()));
-  if (!pushed->pass(1 + static_cast<long>(events_before), nullptr)) return pushed->ended();
+  if (!pushed->pass(1 + static_cast<long>(events_before), nullptr)) return evidence_of_end(*pushed);
   ChaosJudge judge;
   LyapunovSpectrum spectrum;
   for (long window = first_window; !judge.is_chaotic() && !judge.is_regular() && window < most_events; window *= 2) {
-    if (!pushed->pass(window, &spectrum)) return pushed->ended();
+    if (!pushed->pass(window, &spectrum)) return evidence_of_end(*pushed);
     judge.add(spectrum, pushed->range());
   }
   return {judge.is_chaotic(), false, judge.is_chaotic() ? "" : judge.doubt()};

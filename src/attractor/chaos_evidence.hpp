@@ -62,12 +62,13 @@ class MotionBeside {
   virtual Eigen::VectorXd range() const = 0;
   /// Of all parts.
   virtual double time() const = 0;
-  /// What is known after it has ended.
-  virtual ChaosEvidence ended() const = 0;
+  /// Once pass() was false: why it has ended, and whether by an interruption.
+  virtual std::string why_ended() const = 0;
+  virtual bool was_interrupted() const { return false; }
 };
 
-/// `begin_beside` begins a motion at the original one's state plus a change (n). `direction` (n; zero where it is not
-/// known) grows there by `rate` > 0 per unit of time.
+/// `begin_beside(change)` begins a motion at the state of the original one plus `change` (n). There `direction` (n,
+/// zero if unknown) grows by `rate` > 0 per unit of time.
 ChaosEvidence chaos_evidence(const std::function<std::unique_ptr<MotionBeside>(const Eigen::VectorXd&)>& begin_beside,
                              const Eigen::VectorXd& direction, double rate);
 

@@ -76,9 +76,7 @@ class IteratesBeside : public MotionBeside {
   }
   VectorXd range() const override { return high_ - low_; }
   double time() const override { return time_; }
-  ChaosEvidence ended() const override {
-    return {false, false, "a motion that begins beside it has ended: " + message_};
-  }
+  std::string why_ended() const override { return message_; }
 
  private:
   const IteratedMap& map_;

@@ -25,8 +25,7 @@ struct MapIteration {
 };
 
 struct MapAttractor {
-  /// Periodic where no multiplier of the orbit tells that it is unstable, chaotic as attractor/chaos_evidence.hpp
-  /// decides.
+  /// Periodic unless a multiplier says that the orbit is unstable; chaotic if chaos_evidence() finds it so.
   AttractorKind kind = AttractorKind::none;
   std::string message;  ///< why it has escaped or not settled
   int period = 0;       ///< in returns; 0: not periodic
