@@ -29,6 +29,14 @@ std::string curve_from(const std::string& tree, const std::string& kind, const s
   return "";
 }
 
+/// The tree that `tchat explore` writes to OUTPUT.txt.
+std::string explored(const Workspace& workspace, const std::string& words, const std::string& output) {
+  const Outcome outcome = workspace.tchat("explore " + words + " -o " + output + " -j 2 -q");
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  return workspace.read(output + ".txt");
+}
+
 struct Place {
   double first, second;
 };
@@ -280,10 +288,7 @@ TEST_CASE("equilibria and cycles: cusp, zero-Hopf, generalised Hopf and boundary
                   "par b1=0, b2=1.5\ninit u=1, x=1.2\nr2 = u^2 + v^2\ngrowth = x - 1 + (b2 - 1)*r2 - r2^2\n"
                   "u' = growth*u - v\nv' = growth*v + u\nx' = b1 + b2*x - x^3\n"
                   "event low = x + 1\njump back: x -> 2\nafter any: low -> back\n");
-  const Outcome outcome = workspace.tchat("explore cusp --over b1=-3:3:31 --and b2=-1:3.5 -o c -j 2 -q");
-  INFO(outcome.text());
-  REQUIRE(outcome.status == 0);
-  const std::string tree = workspace.read("c.txt");
+  const std::string tree = explored(workspace, "cusp --over b1=-3:3:31 --and b2=-1:3.5", "c");
   INFO(tree);
   CHECK(count_of(tree, "LP") == 2);
   CHECK(count_of(tree, "HB") == 1);
@@ -311,10 +316,7 @@ TEST_CASE("a map: folds of doubled orbits begin at generalised period doubling")
   workspace.write("map.tch",
                   "par p=-0.3, q=0.3\ninit x=0.01\nx' = 0\nphi' = 1\nevent turn = 1 - phi\n"
                   "jump back: x -> -(1+p)*x + q*x^3 + x^5, phi -> phi - 1\nafter any: turn -> back\n");
-  const Outcome outcome = workspace.tchat("explore map --over p=-0.3:0.1:21 --and q=-0.5:0.5 -o m -j 2 -q");
-  INFO(outcome.text());
-  REQUIRE(outcome.status == 0);
-  const std::string tree = workspace.read("m.txt");
+  const std::string tree = explored(workspace, "map --over p=-0.3:0.1:21 --and q=-0.5:0.5", "m");
   INFO(tree);
   CHECK(count_of(tree, "LP") == 1);
   for (const Place& point : inner_points(workspace.file("m/p." + curve_from(tree, "LP", {"GPD"})), "q")) {
@@ -330,10 +332,7 @@ TEST_CASE("a map: torus bifurcations of orbits and of doubled orbits end at a 1:
                   "par p=-0.3, q=-0.2\ninit x=0.01, y=0\nx' = 0\ny' = 0\nphi' = 1\nevent turn = 1 - phi\n"
                   "jump back: x -> -x + y, y -> -(1+p)*y + q*x - 0.3*x^3 + 0.5*x^2*y, phi -> phi - 1\n"
                   "after any: turn -> back\n");
-  const Outcome outcome = workspace.tchat("explore map --over q=-0.2:0.2:21 --and p=-0.5:0.5 -o m -j 2 -q");
-  INFO(outcome.text());
-  REQUIRE(outcome.status == 0);
-  const std::string tree = workspace.read("m.txt");
+  const std::string tree = explored(workspace, "map --over q=-0.2:0.2:21 --and p=-0.5:0.5", "m");
   INFO(tree);
   CHECK(count_of(tree, "TR") == 2);
   const auto points = [&](const std::string& name) { return inner_points(workspace.file("m/p." + name), "p"); };
