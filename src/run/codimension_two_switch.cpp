@@ -95,7 +95,7 @@ BranchSetup from_orbit(const HybridSystem& system, const RunSettings& settings, 
 }
 
 /// One of the parameters may leave the orbits that are born where they are, at the label: then the other one is tried.
-/// What is told is that no curve begins, else what is wrong with the first one, whose order the user gave.
+/// If both fail, the error is that of the user's own order, unless one of them shows that no curve begins.
 BranchSetup begin_curve(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected,
                         PointType curve) {
   std::string trouble;

@@ -349,7 +349,7 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   const bool has_other = !closed && !begins_here;
   if (request.both_directions && !has_other && reports.table != nullptr)
     *reports.table << (closed ? "  --both: the other direction goes round the same closed branch, and is left out\n"
-                              : "  --both: the curve begins at the label, and has one direction\n");
+                              : "  --both: the curve begins at the label, so there is no other direction\n");
   if (request.both_directions && has_other && !(interrupted && interrupted())) {
     const std::size_t labels_before = writer.labels().size();
     BranchSetup other_side;

@@ -36,8 +36,8 @@ class ReturnMapForms {
   /// `pair`: of complex vectors, which need more room. Segments have one mesh in common.
   ReturnMapForms(const DefiningSystem& system, const OrbitShape& shape, bool pair);
 
-  /// S(mu_0) at x, whose segments `condensed` holds. Both stay as they are until the last call below, but for
-  /// right-hand sides. False where S is singular or not finite.
+  /// Factors S(mu_0) at x, where `condensed` holds the linearisation. Neither may change before the last call below,
+  /// except for right-hand sides. False if S is singular or not finite.
   bool factorize(CondensedSystem& condensed, const Orbit& x, double mu_0);
 
   /// The vectors of the multiplier nearest to mu; false where there is none near it. Allocates.
