@@ -26,10 +26,6 @@ class NodalExpansion {
   /// Part number m of the equations at x. Not finite where the problem's functions are not.
   Eigen::VectorXd part(const Orbit& x, const NodalParts& parts, int m) const;
 
-  /// The second derivative of the equations in two directions, which have the first free parameter's change as their
-  /// last entry.
-  Eigen::VectorXd second_with_parameter(const Orbit& x, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const;
-
  private:
   const DefiningSystem& system_;
 };

@@ -8,75 +8,18 @@ namespace tchat {
 
 namespace {
 
-using Vector = Eigen::VectorXd;
-
-Vector with_parameter(const Vector& v, double parameter) {
-  Vector result(v.size() + 1);
-  result << v, parameter;
-  return result;
+/// The change of y and p to the centre of the bifurcation, where g_y and g_s vanish.
+Eigen::Vector2d change_to_centre(const ReducedEquation& g) {
+  Eigen::Matrix2d hessian;
+  hessian << g.yy.value, g.ys.value, g.ys.value, g.ss.value;
+  return -hessian.inverse() * Eigen::Vector2d(g.y, g.s);
 }
 
-/// The derivatives of g at a point.
-struct ReducedEquation {
-  double y = 0.0, s = 0.0;  // first ones
-  Coefficient yy, ys, ss;
-
-  double square_of_rate() const { return ys.value * ys.value - yy.value * ss.value; }
-};
-
-class Reduction {
- public:
-  /// The equations are linearised.
-  explicit Reduction(SingularEquations& equations)
-      : equations_(equations), w_(equations.left_vector()), v_(with_parameter(equations.right_vector(), 0.0)) {
-    u_ = with_parameter(equations_.solve(-equations_.by_parameter(), g_.s), 1.0);
-    g_.y = equations_.critical();
-    along_v_ = equations_.second(v_, v_);
-    g_.yy = derivative(along_v_);
-    g_.ys = derivative(equations_.second(v_, u_));
-    g_.ss = derivative(equations_.second(u_, u_));
-  }
-
-  const ReducedEquation& g() const { return g_; }
-
-  /// Newton's step to the centre of the bifurcation, with the parameter.
-  Vector step() const {
-    double zeta = 0.0;
-    const Vector correction = with_parameter(equations_.solve(-equations_.residual(), zeta), 0.0);
-    Eigen::Matrix2d hessian;
-    hessian << g_.yy.value, g_.ys.value, g_.ys.value, g_.ss.value;
-    const Eigen::Vector2d change = -hessian.inverse() * Eigen::Vector2d(g_.y, g_.s);
-    return correction + change(0) * v_ + change(1) * u_;
-  }
-
-  BranchingForm form() const {
-    const double rate = std::sqrt(g_.square_of_rate());
-    const double error = std::abs(g_.ys.value) * g_.ys.uncertainty +
-                         0.5 * (std::abs(g_.yy.value) * g_.ss.uncertainty + std::abs(g_.ss.value) * g_.yy.uncertainty);
-    double zeta = 0.0;
-    const Vector curvature = equations_.solve(-along_v_, zeta);
-    const Coefficient cubic = derivative(equations_.third(equations_.right_vector()));
-    const Coefficient bent = derivative(3.0 * equations_.second(v_, with_parameter(curvature, 0.0)));
-    return {{0.5 * g_.yy.value, 0.5 * g_.yy.uncertainty},
-            {rate, error / rate},
-            {(cubic.value + bent.value) / 6.0, (cubic.uncertainty + bent.uncertainty) / 6.0}};
-  }
-
- private:
-  Coefficient derivative(const Vector& rows) const {
-    return {-w_.dot(rows), equations_.error() * w_.cwiseAbs().dot(rows.cwiseAbs())};
-  }
-
-  SingularEquations& equations_;
-  Vector w_, v_, u_;
-  Vector along_v_;
-  ReducedEquation g_;
-};
-
-/// Of a step with the parameter, whose change is relative to its own size.
-double relative_length(const Vector& step, double size, double parameter) {
-  const Eigen::Index n = step.size() - 1;
-  return std::max(step.head(n).lpNorm<Eigen::Infinity>() / size, std::abs(step(n)) / (1.0 + std::abs(parameter)));
+BranchingForm form_of(const ReducedEquation& g, const Coefficient& cubic) {
+  const double rate = std::sqrt(g.square_of_rate());
+  const double error = std::abs(g.ys.value) * g.ys.uncertainty +
+                       0.5 * (std::abs(g.yy.value) * g.ss.uncertainty + std::abs(g.ss.value) * g.yy.uncertainty);
+  return {{0.5 * g.yy.value, 0.5 * g.yy.uncertainty}, {rate, error / rate}, cubic};
 }
 
 /// `before` is that of a point one step before, `place` the rounding of states.
@@ -98,17 +41,17 @@ std::optional<BranchingForm> branching_form(SingularEquations& equations, Orbit&
   std::optional<BranchingForm> before;
   double last = farthest;
   for (int k = 0; k < most_steps; ++k) {
-    if (!equations.linearise(x)) return std::nullopt;
-    const Reduction reduction(equations);
-    if (!(reduction.g().square_of_rate() > 0.0)) return std::nullopt;
-    if (before) return with_errors_of_place(reduction.form(), *before, rounding * size);
-    const Vector step = reduction.step();
-    const double length = relative_length(step, size, equations.parameter(x));
+    const std::optional<ReducedEquation> g = equations.reduce(x);
+    if (!g || !(g->square_of_rate() > 0.0)) return std::nullopt;
+    if (before) return with_errors_of_place(form_of(*g, equations.cubic()), *before, rounding * size);
+    const Eigen::Vector2d change = change_to_centre(*g);
+    const double length = std::max(equations.find_step(change(0), change(1)) / size,
+                                   std::abs(change(1)) / (1.0 + std::abs(equations.parameter(x))));
     if (!(length < farthest)) return std::nullopt;
     const bool is_rounding = last < near && length > 0.5 * last;  // that the equations may amplify
-    if (length < arrived || is_rounding) before = reduction.form();
+    if (length < arrived || is_rounding) before = form_of(*g, equations.cubic());
     last = length;
-    equations.move(x, step);
+    equations.move(x);
   }
   return std::nullopt;
 }

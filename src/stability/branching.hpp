@@ -30,26 +30,29 @@
 
 namespace tchat {
 
-/// The equations near a branch point. Directions "with the parameter" have N + 1 entries, the last one its change.
+/// The derivatives of g at a point, second ones with the errors of sums.
+struct ReducedEquation {
+  double y = 0.0, s = 0.0;
+  Coefficient yy, ys, ss;
+
+  double square_of_rate() const { return ys.value * ys.value - yy.value * ss.value; }
+};
+
+/// The equations near a branch point.
 class SingularEquations {
  public:
-  using Vector = Eigen::VectorXd;
   virtual ~SingularEquations() = default;
 
-  /// At x, which the calls below refer to until the next one; false where it cannot be done.
-  virtual bool linearise(const Orbit& x) = 0;
-  virtual const Vector& right_vector() const = 0;  ///< V
-  virtual const Vector& left_vector() const = 0;   ///< W
-  virtual double critical() const = 0;             ///< -W F_u V = g_y
-  virtual Vector residual() const = 0;             ///< F
-  virtual Vector by_parameter() const = 0;         ///< F_p
-  /// v and `excess` of F_u v + excess b = right, r v = 0.
-  virtual Vector solve(const Vector& right, double& excess) = 0;
-  virtual Vector second(const Vector& u, const Vector& v) const = 0;  ///< F''(u, v), with the parameter
-  virtual Vector third(const Vector& v) const = 0;                    ///< F'''(v, v, v)
-  virtual void move(Orbit& x, const Vector& change) const = 0;        ///< with the parameter
+  /// g at x, to which the calls below refer until the next one; nothing where the equations are more than simply
+  /// singular, or not finite.
+  virtual std::optional<ReducedEquation> reduce(const Orbit& x) = 0;
+  /// c at that point, with the errors of sums.
+  virtual Coefficient cubic() = 0;
+  /// Newton's step from that point to F + zeta b = 0 with these changes of y and p: the largest change of an unknown.
+  virtual double find_step(double y, double s) = 0;
+  /// That step; x is the orbit of reduce().
+  virtual void move(Orbit& x) const = 0;
   virtual double parameter(const Orbit& x) const = 0;
-  virtual double error() const = 0;  ///< of sums over derivatives, as a share of their sizes
 };
 
 /// Coefficients of g, with the errors of sums. The sign of a is that of V.

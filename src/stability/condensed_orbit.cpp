@@ -31,7 +31,7 @@ bool CondensedOrbit::linearise(const Orbit& x) {
 }
 
 /// Those of the collocation rows are known from the linearisation.
-void CondensedOrbit::put_residual(const Orbit& x) {
+const RowWeights& CondensedOrbit::residual(const Orbit& x) {
   const int n = system_.dimension();
   rows_.collocation = residual_.collocation;
   Eigen::VectorXd jump(n);
@@ -44,6 +44,7 @@ void CondensedOrbit::put_residual(const Orbit& x) {
     const double* const next = x.start((s + 1) % system_.segments());
     for (int a = 0; a < n; ++a) *ends++ = next[a] - jump(a);
   }
+  return rows_;
 }
 
 bool CondensedOrbit::correct(const Eigen::VectorXd& q, Orbit& x) {
@@ -55,7 +56,7 @@ bool CondensedOrbit::correct(const Eigen::VectorXd& q, Orbit& x) {
   std::optional<Eigen::Index> parameter;
   for (int k = 0; k < most_iterations; ++k) {
     if (!linearise(x)) return false;
-    put_residual(x);
+    residual(x);
     if (!is_fold(critical_)) {
       forms_.solve(rows_, change);
     } else {

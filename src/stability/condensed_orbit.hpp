@@ -20,14 +20,14 @@ class CondensedOrbit {
   /// At x, which stays as it is until the last call of forms(). False where the equations are singular or not finite.
   bool linearise(const Orbit& x);
   ReturnMapForms& forms() { return forms_; }
+  /// Of all rows at x, which is linearised, until the next call.
+  const RowWeights& residual(const Orbit& x);
 
   /// Newton's method at the same parameters, or near a fold at a start that moves across q alone, until it no longer
   /// comes nearer: rounding, which the orbit may amplify. False where it fails.
   bool correct(const Eigen::VectorXd& q, Orbit& x);
 
  private:
-  void put_residual(const Orbit& x);
-
   const DefiningSystem& system_;
   std::complex<double> critical_;
   CondensedSystem condensed_;

@@ -32,51 +32,72 @@ std::optional<CriticalDirection> critical_direction(const Eigen::MatrixXd& a) {
   return result;
 }
 
+Vector with_parameter(const Vector& v, double parameter) {
+  Vector result(v.size() + 1);
+  result << v, parameter;
+  return result;
+}
+
 class EquilibriumEquations final : public SingularEquations {
  public:
   explicit EquilibriumEquations(const DefiningSystem& system) : system_(system) {}
 
-  bool linearise(const Orbit& x) override {
+  std::optional<ReducedEquation> reduce(const Orbit& x) override {
     x_ = x;
     forms_.emplace(system_, x_);
     const std::optional<CriticalDirection> found = critical_direction(forms_->jacobian());
-    if (!found) return false;
-    const Eigen::Index n = found->q.size();
-    q_ = found->q, w_ = -found->p, critical_ = found->lambda;
+    if (!found) return std::nullopt;
+    q_ = found->q, w_ = -found->p;
+    const Eigen::Index n = q_.size();
     bordered_ = Eigen::MatrixXd::Zero(n + 1, n + 1);
     bordered_.topLeftCorner(n, n) = forms_->jacobian();
     bordered_.topRightCorner(n, 1) = -q_;
     bordered_.bottomLeftCorner(1, n) = q_.transpose();
-    return true;
+    ReducedEquation g;
+    g.y = found->lambda;
+    v_ = with_parameter(q_, 0.0);
+    u_ = with_parameter(solve(-forms_->by_parameter(), g.s), 1.0);
+    along_v_ = forms_->second_with_parameter(v_, v_);
+    g.yy = weighted(along_v_);
+    g.ys = weighted(forms_->second_with_parameter(v_, u_));
+    g.ss = weighted(forms_->second_with_parameter(u_, u_));
+    return g;
   }
-  const Vector& right_vector() const override { return q_; }
-  const Vector& left_vector() const override { return w_; }
-  double critical() const override { return critical_; }
-  Vector residual() const override { return forms_->field(); }
-  Vector by_parameter() const override { return forms_->by_parameter(); }
-  Vector solve(const Vector& right, double& excess) override {
-    Vector rows(right.size() + 1);
-    rows << right, 0.0;
-    const Vector solution = tchat::solve(bordered_, rows);
+  Coefficient cubic() override {
+    double excess = 0.0;
+    const Vector curvature = with_parameter(solve(-along_v_, excess), 0.0);
+    const Coefficient third = weighted(forms_->third(q_, q_, q_));
+    const Coefficient bent = weighted(3.0 * forms_->second_with_parameter(v_, curvature));
+    return {(third.value + bent.value) / 6.0, (third.uncertainty + bent.uncertainty) / 6.0};
+  }
+  double find_step(double y, double s) override {
+    double excess = 0.0;
+    step_ = with_parameter(solve(-forms_->field(), excess), 0.0) + y * v_ + s * u_;
+    return step_.head(q_.size()).lpNorm<Eigen::Infinity>();
+  }
+  void move(Orbit& x) const override {
+    x.states.topRows(q_.size()).colwise() += step_.head(q_.size());
+    x.par(system_.free_parameters().front() - 1) += step_(q_.size());
+  }
+  double parameter(const Orbit& x) const override { return x.par(system_.free_parameters().front() - 1); }
+
+ private:
+  Vector solve(const Vector& right, double& excess) const {
+    const Vector solution = tchat::solve(bordered_, with_parameter(right, 0.0));
     excess = solution(right.size());
     return solution.head(right.size());
   }
-  Vector second(const Vector& u, const Vector& v) const override { return forms_->second_with_parameter(u, v); }
-  Vector third(const Vector& v) const override { return forms_->third(v, v, v); }
-  void move(Orbit& x, const Vector& change) const override {
-    x.states.topRows(q_.size()).colwise() += change.head(q_.size());
-    x.par(system_.free_parameters().front() - 1) += change(q_.size());
+  Coefficient weighted(const Vector& rows) const {
+    return {-w_.dot(rows), error_of_sums(system_.system()) * w_.cwiseAbs().dot(rows.cwiseAbs())};
   }
-  double parameter(const Orbit& x) const override { return x.par(system_.free_parameters().front() - 1); }
-  double error() const override { return error_of_sums(system_.system()); }
 
- private:
   const DefiningSystem& system_;
   Orbit x_;
   std::optional<EquilibriumForms> forms_;
   Vector q_, w_;
-  double critical_ = 0.0;
   Eigen::MatrixXd bordered_;
+  Vector v_, u_, step_;  // with the parameter
+  Vector along_v_;       // F''(V, V)
 };
 
 }  // namespace

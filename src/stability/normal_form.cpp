@@ -4,12 +4,9 @@
 #include <cmath>
 
 #include "bvp/mesh_adaptation.hpp"
-#include "bvp/nodal_expansion.hpp"
-#include "bvp/nodal_system.hpp"
 #include "stability/condensed_orbit.hpp"
 #include "stability/multilinear.hpp"
 #include "stability/orbit_forms.hpp"
-#include "stability/shifted_orbit.hpp"
 
 namespace tchat {
 
@@ -40,44 +37,61 @@ std::optional<Found> form_of(const DefiningSystem& system, CondensedOrbit& orbit
 class OrbitEquations final : public SingularEquations {
  public:
   OrbitEquations(const DefiningSystem& system, const OrbitShape& shape)
-      : system_(system), nodal_(system, shape), expansion_(system) {}
+      : system_(system),
+        orbit_(system, shape, 1.0),
+        along_parameter_(orbit_.forms().make_vector()),
+        by_vector_(along_parameter_),
+        by_other_(along_parameter_),
+        curvature_(along_parameter_),
+        step_(along_parameter_) {}
 
-  bool linearise(const Orbit& x) override {
-    x_ = x;
-    orbit_.emplace(nodal_, x_, shift_for(1.0));
-    ComplexVector v, w;
-    Complex multiplier;
-    if (!orbit_->is_regular() || !orbit_->find_critical(1.0, v, w, multiplier)) return false;
-    v_ = v.real(), w_ = w.real();
-    critical_ = multiplier.real() - 1.0;
-    return true;
+  std::optional<ReducedEquation> reduce(const Orbit& x) override {
+    CriticalVectors vectors;
+    if (!orbit_.linearise(x) || !forms().find_critical(1.0, vectors)) return std::nullopt;
+    forms().take(vectors);
+    x_ = &x;
+    ReducedEquation g;
+    g.y = vectors.multiplier.real() - 1.0;
+    g.s = forms().solve_along_parameter(along_parameter_);
+    forms().differentiate(vector(), by_vector_);
+    forms().differentiate(along_parameter_, by_other_);
+    g.yy = derivative(by_vector_, vector());
+    g.ys = derivative(by_vector_, along_parameter_);
+    g.ss = derivative(by_other_, along_parameter_);
+    return g;
   }
-  const Vector& right_vector() const override { return v_; }
-  const Vector& left_vector() const override { return w_; }
-  double critical() const override { return critical_; }
-  Vector residual() const override { return expansion_.part(x_, {}, 0); }
-  Vector by_parameter() const override { return orbit_->parameter_column(); }
-  Vector solve(const Vector& right, double& excess) override {
-    return orbit_->solve_beside(1.0, right, orbit_->closing_rows(start()), start(), excess);
+  Coefficient cubic() override {
+    forms().solve_beside(forms().second_along_vector(), curvature_);
+    const Product third = forms().third_along_vector();
+    const Coefficient bent = derivative(by_vector_, curvature_);
+    return {(3.0 * bent.value - third.value.real()) / 6.0, (3.0 * bent.uncertainty + error() * third.size) / 6.0};
   }
-  Vector second(const Vector& u, const Vector& v) const override { return expansion_.second_with_parameter(x_, u, v); }
-  Vector third(const Vector& v) const override { return OrbitForms(system_, x_).third(v, v, v); }
-  void move(Orbit& x, const Vector& change) const override {
-    move_orbit(system_, x, change, change(change.size() - 1));
+  double find_step(double y, double s) override {
+    forms().solve_beside(orbit_.residual(*x_), step_);
+    step_.states += y * vector().states + s * along_parameter_.states;
+    step_.durations += y * vector().durations + s * along_parameter_.durations;
+    step_.globals = s * along_parameter_.globals;
+    return std::max(step_.states.lpNorm<Eigen::Infinity>(), step_.durations.lpNorm<Eigen::Infinity>());
   }
+  void move(Orbit& x) const override { advance(x, 1.0, step_, system_.free_parameters()); }
   double parameter(const Orbit& x) const override { return x.par(system_.free_parameters().front() - 1); }
-  double error() const override { return error_of_sums(system_.system()); }
 
-  Vector start() const { return v_.head(x_.shape.dimension); }  ///< q
+  Vector start() { return vector().states.col(0); }  ///< q
 
  private:
+  ReturnMapForms& forms() { return orbit_.forms(); }
+  const OrbitVector& vector() { return forms().right_vector(); }
+  double error() const { return error_of_sums(system_.system()); }
+  Coefficient derivative(const OrbitVector& row, const OrbitVector& v) const {
+    return {dot(row, v), error() * dot_of_sizes(row, v)};
+  }
+
   const DefiningSystem& system_;
-  NodalSystem nodal_;
-  NodalExpansion expansion_;
-  Orbit x_;
-  std::optional<ShiftedOrbit> orbit_;
-  Vector v_, w_;
-  double critical_ = 0.0;
+  CondensedOrbit orbit_;
+  const Orbit* x_ = nullptr;
+  OrbitVector along_parameter_;       // U
+  OrbitVector by_vector_, by_other_;  // -W F''(V, .) and -W F''(U, .)
+  OrbitVector curvature_, step_;
 };
 
 /// At a fold the sign of a is that of q, which may have two entries of largest modulus.

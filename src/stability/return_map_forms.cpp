@@ -82,6 +82,7 @@ ReturnMapForms::ReturnMapForms(const DefiningSystem& system, const OrbitShape& s
       change_(n_),
       f_(n_),
       fx_(n_, n_),
+      fp_(n_, system.free_count()),
       vectors_(pair ? 2 : 1, OrbitVector(shape, system.free_count())),
       weights_(vectors_.size(), expansion_.make_rows()),
       rows_(vectors_.size() * vectors_.size(), vectors_.front()),
@@ -193,9 +194,11 @@ void ReturnMapForms::keep_planes(const RowWeights& weights, const OrbitVector& v
   for (int s = 0; s < shape_.segments; ++s) {
     if (system_.has_event(s)) continue;
     const Eigen::Index end = shape_.last_node(s);
-    system_.system().first(FunctionKind::field, system_.signature()[index(s)].field, x_->end(s), x_->par.data(), {},
-                           f_.data(), fx_.data(), nullptr);
-    row.states.col(end).noalias() += factor * weights.ends[index(s * (1 + n_))] * (fx_.transpose() * v.states.col(end));
+    system_.system().first(FunctionKind::field, system_.signature()[index(s)].field, x_->end(s), x_->par.data(),
+                           system_.free_parameters(), f_.data(), fx_.data(), fp_.data());
+    const double weight = factor * weights.ends[index(s * (1 + n_))];
+    row.states.col(end).noalias() += weight * (fx_.transpose() * v.states.col(end));
+    row.globals.noalias() += weight * (fp_.transpose() * v.states.col(end));
   }
 }
 
@@ -215,23 +218,57 @@ void ReturnMapForms::solve(const RowWeights& rows, OrbitVector& h) {
   condensed_->extend_condensed(ends_.data(), h);
 }
 
+/// From solutions with S(mu_0), for a right-hand side (`ends`) and for a column, to the one of S(1) ends + factor
+/// column = right-hand side with q' v_1(0) = 0: returns the factor.
+double ReturnMapForms::put_across(const Vector& column, const Vector& q, Vector& ends) const {
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n_ + 1, n_ + 1);
+  matrix.topLeftCorner(n_, n_) = Eigen::MatrixXd::Identity(n_, n_) + (1.0 - shift_) * closing_.topRows(n_);
+  matrix.topRightCorner(n_, 1) = column.head(n_);
+  matrix.bottomLeftCorner(1, n_) = q.transpose();
+  Vector start = Vector::Zero(n_ + 1);
+  start.head(n_) = ends.head(n_);
+  start = matrix.partialPivLu().solve(start).eval();
+  ends -= start(n_) * column + (1.0 - shift_) * (closing_ * start.head(n_));
+  return start(n_);
+}
+
 void ReturnMapForms::solve_across(const RowWeights& rows, const Vector& q, Eigen::Index k, OrbitVector& h) {
   map_.parameter_column(*condensed_, *x_, static_cast<int>(k), rhs_.data());
   Vector by_parameter(map_.size());
   lu_.solve(rhs_.data(), by_parameter.data());
   solve_ends(rows, ends_);
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n_ + 1, n_ + 1);
-  matrix.topLeftCorner(n_, n_) = Eigen::MatrixXd::Identity(n_, n_) + (1.0 - shift_) * closing_.topRows(n_);
-  matrix.topRightCorner(n_, 1) = by_parameter.head(n_);
-  matrix.bottomLeftCorner(1, n_) = q.transpose();
-  Vector start = Vector::Zero(n_ + 1);
-  start.head(n_) = ends_.head(n_);
-  start = matrix.partialPivLu().solve(start).eval();
-  ends_ -= start(n_) * by_parameter + (1.0 - shift_) * (closing_ * start.head(n_));
   h.globals.setZero();
-  h.globals(k) = start(n_);
+  h.globals(k) = put_across(by_parameter, q, ends_);
   condensed_->extend_condensed(ends_.data(), h);
 }
+
+double ReturnMapForms::solve_beside(const RowWeights& rows, OrbitVector& h) {
+  const Vector q = right_vector().states.col(0);
+  solve_ends(rows, ends_);
+  const double zeta = put_across(closing_ * q, q, ends_);
+  h.globals.setZero();
+  condensed_->extend_condensed(ends_.data(), h);
+  return zeta;
+}
+
+double ReturnMapForms::solve_along_parameter(OrbitVector& h) {
+  const Vector q = right_vector().states.col(0);
+  map_.parameter_column(*condensed_, *x_, 0, rhs_.data());
+  rhs_ = -rhs_;
+  lu_.solve(rhs_.data(), ends_.data());
+  const double zeta = put_across(closing_ * q, q, ends_);
+  h.globals.setZero();
+  h.globals(0) = 1.0;
+  condensed_->extend(ends_.data(), h);
+  return zeta;
+}
+
+const RowWeights& ReturnMapForms::second_along_vector() {
+  find_products();
+  return second_.front();
+}
+
+Product ReturnMapForms::third_along_vector() const { return contract(weights_.front(), third_.front()); }
 
 Eigen::Index ReturnMapForms::parameter_across(const CriticalVectors& vectors) {
   Vector sizes(system_.free_count());

@@ -63,6 +63,20 @@ class ReturnMapForms {
   /// The free parameter that moves the fold of these vectors the most. Allocates.
   Eigen::Index parameter_across(const CriticalVectors& vectors);
 
+  /// Normalised vectors of the multiplier 1, for the calls below, which allocate.
+  void take(const CriticalVectors& vectors) { put_vectors(vectors); }
+  const OrbitVector& right_vector() const { return vectors_.front(); }  ///< V
+  /// M(1) h + zeta E q = -rows with q' h_1(0) = 0, q = V_1(0): returns zeta.
+  double solve_beside(const RowWeights& rows, OrbitVector& h);
+  /// The same for the rows' derivative by the first free parameter, with h.globals(0) = 1.
+  double solve_along_parameter(OrbitVector& h);
+  /// row = -W F''(v, .), F the equations; v.globals are read.
+  void differentiate(const OrbitVector& v, OrbitVector& row) { differentiate(weights_.front(), v, row); }
+  /// F''(V, V).
+  const RowWeights& second_along_vector();
+  /// W F'''(V, V, V), after second_along_vector().
+  Product third_along_vector() const;
+
  private:
   using Vector = Eigen::VectorXd;
 
@@ -72,6 +86,7 @@ class ReturnMapForms {
   void find_products();
   void keep_planes(const RowWeights& weights, const OrbitVector& v, double factor, OrbitVector& row);
   void solve_ends(const RowWeights& rows, Vector& ends);
+  double put_across(const Vector& column, const Vector& q, Vector& ends) const;
   void differentiate(const RowWeights& weights, const OrbitVector& v, OrbitVector& row);
   void combine_squares();
   void solve_twice(Complex mu);
@@ -99,7 +114,7 @@ class ReturnMapForms {
   Eigen::PartialPivLU<Eigen::MatrixXcd> factors_;  // of it
   Eigen::VectorXcd start_, change_;                // n
   Vector f_;                                       // n
-  Eigen::MatrixXd fx_;
+  Eigen::MatrixXd fx_, fp_;
 
   // Real and imaginary parts, or the former alone:
   std::vector<OrbitVector> vectors_;  // V

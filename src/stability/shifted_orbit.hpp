@@ -26,8 +26,6 @@ class ShiftedOrbit {
   /// E q.
   ComplexVector closing_rows(const ComplexVector& q) const;
   Vector closing_rows(const Vector& q) const;
-  /// The column of the first free parameter.
-  Vector parameter_column() const { return nodal_.parameter_columns().col(0); }
 
   ComplexVector solve(Complex mu, const ComplexVector& right);
 
