@@ -76,7 +76,7 @@ void add_starts(const SweepRequest& request, const LoadedProblem& loaded, Sample
     SimulationRequest own = setup.request;
     own.state = state;
     const SimulationStart start = simulation_start(own, setup.constants, system);
-    setup.par = start.par;
+    setup.par = start.par.matrix();
     if (!start.watched.empty()) setup.request.modes = modes_text(start.watched);
     add_start(request, start.state, job, [&] {
       setup.starts.push_back(start.state);
