@@ -100,18 +100,29 @@ double difference(const Found& a, const Found& b, Complex critical) {
   return std::abs(a.form.coefficient - (is_turned ? -1.0 : 1.0) * b.form.coefficient);
 }
 
-/// Moves `other`, which has another mesh, by a small step along the tangent at x. It is an orbit to first order.
-void move_along(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent, Orbit& other) {
-  constexpr double small = 1e-5;
+/// `other`, which has another mesh, moved by a step of this relative size along the tangent at x. It is an orbit to
+/// first order.
+Orbit moved_along(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent, Orbit other, double size) {
   double fastest = tangent.states.cwiseAbs().maxCoeff() / (1.0 + x.states.cwiseAbs().maxCoeff());
   for (std::size_t k = 0; k < system.free_parameters().size(); ++k)
     fastest = std::max(fastest, std::abs(tangent.globals(static_cast<Eigen::Index>(k))) /
                                     (1.0 + std::abs(x.par(system.free_parameters()[k] - 1))));
-  const double step = small / fastest;
+  const double step = size / fastest;
   other.states += step * interpolate_states(tangent.states, x.shape, x.mesh, other.shape, other.mesh);
   for (int s = 0; s < x.shape.segments; ++s) other.duration(s) += step * tangent.durations(s);
   for (std::size_t k = 0; k < system.free_parameters().size(); ++k)
     other.par(system.free_parameters()[k] - 1) += step * tangent.globals(static_cast<Eigen::Index>(k));
+  return other;
+}
+
+/// The form beside x along the branch, so near that the multiplier is still the one nearest to the critical value:
+/// close to grazing it changes by far more than the orbit.
+std::optional<Found> form_beside(const DefiningSystem& system, CondensedOrbit& coarse, const Orbit& x,
+                                 const OrbitVector& tangent, const Orbit& other, Complex critical) {
+  for (const double size : {1e-5, 1e-7, 1e-9})
+    if (std::optional<Found> found = form_of(system, coarse, moved_along(system, x, tangent, other, size), critical))
+      return found;
+  return std::nullopt;
 }
 
 void add_difference(Coefficient& fine, double coarse) { fine.uncertainty += std::abs(fine.value - coarse); }
@@ -147,8 +158,7 @@ std::optional<NormalForm> normal_form(const DefiningSystem& system, const Orbit&
   if (!compared) return std::nullopt;
   NormalForm form = found->form;
   form.uncertainty += difference(*found, *compared, critical);
-  move_along(system, x, tangent, other);
-  const std::optional<Found> beside = form_of(system, coarse, other, critical);
+  const std::optional<Found> beside = form_beside(system, coarse, x, tangent, other, critical);
   if (!beside) return std::nullopt;
   form.uncertainty += std::abs(found->multiplier - critical) * difference(*beside, *compared, critical) /
                       std::abs(beside->multiplier - compared->multiplier);
