@@ -92,8 +92,8 @@ std::optional<BranchRecognition::OwnOrbit> BranchRecognition::last_regular_orbit
   return std::nullopt;
 }
 
-std::optional<std::string> BranchRecognition::branch_of(const CataloguedSection& section) const {
-  const std::string by_numbers = catalogue_.branch_of(section);
+std::optional<KnownBranch> BranchRecognition::branch_of(const CataloguedSection& section) const {
+  const KnownBranch by_numbers{catalogue_.branch_of(section)};
   const std::vector<std::string> near = catalogue_.branches_near(section);
   if (near.empty()) return by_numbers;
   const std::optional<OwnOrbit> own = last_regular_orbit(section);
@@ -102,10 +102,10 @@ std::optional<std::string> BranchRecognition::branch_of(const CataloguedSection&
   for (const std::string& branch : near) {
     const Verdict verdict = compare(*own, branch);
     if (verdict == Verdict::interrupted) return std::nullopt;
-    if (verdict == Verdict::same) return branch;
-    is_refuted = is_refuted || (verdict == Verdict::different && branch == by_numbers);
+    if (verdict == Verdict::same) return KnownBranch{branch, true};
+    is_refuted = is_refuted || (verdict == Verdict::different && branch == by_numbers.name);
   }
-  return is_refuted ? "" : by_numbers;
+  return is_refuted ? KnownBranch{} : by_numbers;
 }
 
 bool BranchRecognition::is_same(const OwnOrbit& own, const CataloguedSection& known,

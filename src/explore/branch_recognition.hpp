@@ -18,6 +18,12 @@
 
 namespace tchat {
 
+/// Of which branch a section is a part.
+struct KnownBranch {
+  std::string name;        ///< "" where there is none
+  bool by_states = false;  ///< an orbit has been compared, not numbers alone
+};
+
 class BranchRecognition {
  public:
   /// Views of all of them, which outlive this object.
@@ -25,8 +31,8 @@ class BranchRecognition {
                     JobRunner& runner)
       : catalogue_(catalogue), commands_(commands), system_(system), runner_(runner) {}
 
-  /// "" where there is none; nothing where a run was not begun for the time was over.
-  std::optional<std::string> branch_of(const CataloguedSection& section) const;
+  /// Nothing where a run was not begun for the time was over.
+  std::optional<KnownBranch> branch_of(const CataloguedSection& section) const;
 
  private:
   enum class Verdict { same, different, unknown, interrupted };

@@ -23,6 +23,11 @@ std::string all_events(int count) {
   return text.empty() ? "" : text + "]";
 }
 
+/// The first `what`, if there is one.
+void replace_first(std::string_view what, std::string_view by, std::string& text) {
+  if (const std::size_t at = text.find(what); at != std::string::npos) text.replace(at, what.size(), by);
+}
+
 }  // namespace
 
 std::string shell_words(const std::vector<std::string>& words) {
@@ -123,6 +128,16 @@ CommandJob ExplorationCommands::switching(const SwitchPoint& at) const {
     std::erase_if(words, [](const std::string& word) { return word.starts_with("DS="); });
   }
   job.lines.push_back(run + shell_words(words));
+  return job;
+}
+
+CommandJob ExplorationCommands::one_way(const CommandJob& both_ways, bool first, double ds) const {
+  const std::string name = both_ways.name + (first ? "_forward" : "_backward");
+  CommandJob job{name, both_ways.lines, both_ways.inputs, files_of(name)};
+  std::string& run = job.lines.back();
+  replace_first(" -o " + quoted_for_shell(path(both_ways.name)), " -o " + quoted_for_shell(path(name)), run);
+  replace_first(" --both", "", run);
+  if (!first) run += shell_words({fmt::format("DS={}", -ds)});
   return job;
 }
 

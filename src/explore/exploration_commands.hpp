@@ -57,6 +57,8 @@ class ExplorationCommands {
   CommandJob start(const std::string& name, double value, const std::string& words, bool rests) const;
   /// What begins at a labelled point.
   CommandJob switching(const SwitchPoint& at) const;
+  /// Of a switch at a branch point one direction alone, the first one or the other; `ds`: DS of the run both ways.
+  CommandJob one_way(const CommandJob& both_ways, bool first, double ds) const;
   /// The run along the known branch.
   CommandJob correction(const OrbitComparison& at) const;
   /// The equilibrium of a label as that of another field.

@@ -45,9 +45,10 @@ namespace fs = std::filesystem;
 /// A switch that is to be followed, and what it begins at.
 struct Candidate {
   ExploredBranch branch;
-  std::size_t parent = 0;  ///< of the diagram's branches; beyond them without one
-  std::size_t label = 0;   ///< of the parent's labels
-  int returns = 1;         ///< at grazing, one impact in so many
+  std::size_t parent = 0;   ///< of the diagram's branches; beyond them without one
+  std::size_t label = 0;    ///< of the parent's labels
+  int returns = 1;          ///< at grazing, one impact in so many
+  bool is_one_way = false;  ///< from a branch point, as the other way is known
 };
 
 class Explorer {
@@ -225,16 +226,51 @@ class Explorer {
     return false;
   }
 
-  /// The known branch that contains every section of a run with more than one point; "" if there is none.
-  std::optional<std::string> known_branch(const std::vector<CataloguedSection>& sections) {
+  /// Those that contain the sections of a run; nothing where that has not been found out, for the time was over.
+  std::optional<std::vector<KnownBranch>> known_branches(const std::vector<CataloguedSection>& sections) {
     const BranchRecognition recognition(catalogue_, commands_, loaded_.library->system(), runner_);
-    std::string known;
+    std::vector<KnownBranch> known;
     for (const CataloguedSection& section : sections) {
-      const std::optional<std::string> same = recognition.branch_of(section);
-      if (!same || (same->empty() && section.parameter.size() > 1)) return same;
-      if (!same->empty()) known = *same;
+      const std::optional<KnownBranch> same = recognition.branch_of(section);
+      if (!same) return std::nullopt;
+      known.push_back(*same);
     }
     return known;
+  }
+
+  /// The one that contains all sections with more than one point; "" if there is none.
+  static std::string known_whole(const std::vector<CataloguedSection>& sections,
+                                 const std::vector<KnownBranch>& known) {
+    std::string whole;
+    for (std::size_t i = 0; i < sections.size(); ++i) {
+      if (known[i].name.empty() && sections[i].parameter.size() > 1) return "";
+      if (!known[i].name.empty()) whole = known[i].name;
+    }
+    return whole;
+  }
+
+  /// Which of the two ways from a branch point is a part of a known branch, if the other one is not.
+  static std::optional<std::size_t> known_way(const std::vector<KnownBranch>& known) {
+    if (known.size() != 2 || known[0].name.empty() == known[1].name.empty()) return std::nullopt;
+    const std::size_t way = known[0].name.empty() ? 1 : 0;
+    return known[way].by_states ? std::optional(way) : std::nullopt;
+  }
+
+  bool goes_both_ways_from_branch_point(const Candidate& candidate) const {
+    return candidate.parent < diagram_.branches.size() && !candidate.is_one_way &&
+           diagram_.branches[candidate.parent].labels[candidate.label].type == "BP";
+  }
+
+  /// Follows the other way alone.
+  bool take_other_way(Candidate candidate, std::size_t known_way, const std::string& known,
+                      std::vector<Candidate>& next) {
+    ExploredBranch& branch = candidate.branch;
+    candidate.is_one_way = true;
+    branch.job =
+        commands_.one_way(branch.job, known_way == 1, read_constants_file(commands_.file('r', branch.name)).step);
+    branch.name = branch.job.name;
+    branch.origin += fmt::format(", the other way is {}", known);
+    return take(candidate, runner_.run({branch.job}).front(), next);
   }
 
   /// Keeps a branch that is new, and adds what begins at its labels to the next round.
@@ -249,14 +285,16 @@ class Explorer {
     if (candidate.returns > 1 && admissible_points(commands_.file('d', branch.name)).only_at_start) return false;
     const PointFile points = read_point_file(commands_.file('p', branch.name));
     std::vector<CataloguedSection> sections = catalogued_sections(branch.name, points, commands_.monitors());
-    const std::optional<std::string> found = known_branch(sections);
+    const std::optional<std::vector<KnownBranch>> found = known_branches(sections);
     if (!found) return interrupt(candidate);
-    if (const std::string& known = *found; !known.empty()) {
+    if (const std::string known = known_whole(sections, *found); !known.empty()) {
       set_outcome(candidate, known, "");
       if (candidate.parent >= diagram_.branches.size()) met_[branch.name.substr(0, branch.name.find('_'))] = known;
       diagram_.joins.push_back(fmt::format("{} ({}): {} again", branch.name, branch.origin, known));
       return false;
     }
+    if (const std::optional<std::size_t> way = known_way(*found); way && goes_both_ways_from_branch_point(candidate))
+      return take_other_way(candidate, *way, (*found)[*way].name, next);
     if (is_full()) {
       leave(candidate, branches_budget());
       return false;

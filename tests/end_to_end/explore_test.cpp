@@ -205,6 +205,20 @@ TEST_CASE("a branch that ends where an impact has velocity zero is known on anot
   }
 }
 
+TEST_CASE("where one way from a branch point is known, the other one alone is a branch") {
+  // Close to a contact the switch at the branch point leads back to the branch that it leaves.
+  const Workspace workspace;
+  std::filesystem::copy(RELAY_SOURCE, workspace.file("relay.cpp"));
+  const Outcome outcome = workspace.tchat(
+      "explore relay --over omega=7.15:7.5:15 PAR(zeta)=0.05 --starts 0 --branches 3 "
+      "UZR={omega:[7.18,7.25,7.29,7.35,7.45]} -o one -j 2 -q");
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  INFO(workspace.read("one.txt"));
+  CHECK(workspace.read("one.txt").find(", the other way is a2") != std::string::npos);
+  CHECK(count_different_orbits(workspace) > 12);
+}
+
 TEST_CASE("a branch that is met where it has no label is known by an orbit that a further run corrects") {
   const Workspace workspace;
   workspace.write("ball.tch", bouncing_ball);
