@@ -102,7 +102,7 @@ std::optional<KnownBranch> BranchRecognition::branch_of(const CataloguedSection&
   for (const std::string& branch : near) {
     const Verdict verdict = compare(*own, branch);
     if (verdict == Verdict::interrupted) return std::nullopt;
-    if (verdict == Verdict::same) return KnownBranch{branch, true};
+    if (verdict == Verdict::same) return KnownBranch{branch, catalogue_.has_beginning(branch, section)};
     is_refuted = is_refuted || (verdict == Verdict::different && branch == by_numbers.name);
   }
   return is_refuted ? KnownBranch{} : by_numbers;

@@ -20,8 +20,8 @@ namespace tchat {
 
 /// Of which branch a section is a part.
 struct KnownBranch {
-  std::string name;        ///< "" where there is none
-  bool by_states = false;  ///< an orbit has been compared, not numbers alone
+  std::string name;       ///< "" where there is none
+  bool is_whole = false;  ///< an orbit has the same states, and the branch has the value at which the section begins
 };
 
 class BranchRecognition {
@@ -31,7 +31,7 @@ class BranchRecognition {
                     JobRunner& runner)
       : catalogue_(catalogue), commands_(commands), system_(system), runner_(runner) {}
 
-  /// Nothing where a run was not begun for the time was over.
+  /// Nothing where a run was not begun, as the time limit was reached.
   std::optional<KnownBranch> branch_of(const CataloguedSection& section) const;
 
  private:

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <filesystem>
+#include <string_view>
 
 #include "bvp/quantity.hpp"
 #include "plugin/plugin_build.hpp"
@@ -16,6 +18,8 @@ namespace tchat {
 
 namespace {
 
+constexpr const char* both_directions = " --both";
+
 /// "[1,2,3]"; "" for none.
 std::string all_events(int count) {
   std::string text;
@@ -23,9 +27,17 @@ std::string all_events(int count) {
   return text.empty() ? "" : text + "]";
 }
 
-/// The first `what`, if there is one.
+/// `what` is in the text.
 void replace_first(std::string_view what, std::string_view by, std::string& text) {
-  if (const std::size_t at = text.find(what); at != std::string::npos) text.replace(at, what.size(), by);
+  const std::size_t at = text.find(what);
+  assert(at != std::string::npos);
+  text.replace(at, what.size(), by);
+}
+
+/// Takes a word that begins so out of a command line, if there is one.
+void remove_word(std::string_view beginning, std::string& line) {
+  const std::size_t at = line.find(fmt::format(" {}", beginning));
+  if (at != std::string::npos) line.erase(at, line.find(' ', at + 1) - at);
 }
 
 }  // namespace
@@ -121,7 +133,7 @@ CommandJob ExplorationCommands::switching(const SwitchPoint& at) const {
   CommandJob job{name, {}, {file('q', at.branch), file('r', at.branch)}, files_of(name)};
   if (resegments) job.lines.push_back(at.command.substr(0, both) + " -q");
   std::string run = resegments ? at.command.substr(both + 4) : at.command;
-  run += std::string(at.type == "BP" || at.type == "BE" ? " --both" : "") + " --clip";
+  run += std::string(at.type == "BP" || at.type == "BE" ? both_directions : "") + " --clip";
   std::vector<std::string> words = constants_;
   if (resegments || at.type == "HB") {  // begins with constants of its own; the sign of DS has been chosen
     words = run_words();
@@ -131,14 +143,21 @@ CommandJob ExplorationCommands::switching(const SwitchPoint& at) const {
   return job;
 }
 
-CommandJob ExplorationCommands::one_way(const CommandJob& both_ways, bool first, double ds) const {
-  const std::string name = both_ways.name + (first ? "_forward" : "_backward");
-  CommandJob job{name, both_ways.lines, both_ways.inputs, files_of(name)};
+CommandJob ExplorationCommands::one_direction(const CommandJob& both, std::optional<double> other_ds) const {
+  const std::string name = both.name + (other_ds ? "_backward" : "_forward");
+  CommandJob job{name, both.lines, both.inputs, files_of(name)};
   std::string& run = job.lines.back();
-  replace_first(" -o " + quoted_for_shell(path(both_ways.name)), " -o " + quoted_for_shell(path(name)), run);
-  replace_first(" --both", "", run);
-  if (!first) run += shell_words({fmt::format("DS={}", -ds)});
+  replace_first(" -o " + quoted_for_shell(path(both.name)), " -o " + quoted_for_shell(path(name)), run);
+  replace_first(both_directions, "", run);
+  if (other_ds) {
+    remove_word("DS=", run);
+    run += fmt::format(" DS={}", *other_ds);
+  }
   return job;
+}
+
+bool ExplorationCommands::goes_in_both_directions(const CommandJob& job) {
+  return job.lines.back().find(both_directions) != std::string::npos;
 }
 
 std::string ExplorationCommands::in_other_field(const std::string& branch, int label, int field) const {

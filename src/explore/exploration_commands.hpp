@@ -3,6 +3,7 @@
 /// All files are in one folder; every command is one that a user could have typed beside it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,8 +58,9 @@ class ExplorationCommands {
   CommandJob start(const std::string& name, double value, const std::string& words, bool rests) const;
   /// What begins at a labelled point.
   CommandJob switching(const SwitchPoint& at) const;
-  /// Of a switch at a branch point one direction alone, the first one or the other; `ds`: DS of the run both ways.
-  CommandJob one_way(const CommandJob& both_ways, bool first, double ds) const;
+  /// One direction of a switch that goes in both: with its DS, or with this one, which is for the other direction.
+  CommandJob one_direction(const CommandJob& both, std::optional<double> other_ds) const;
+  static bool goes_in_both_directions(const CommandJob& job);
   /// The run along the known branch.
   CommandJob correction(const OrbitComparison& at) const;
   /// The equilibrium of a label as that of another field.

@@ -45,10 +45,9 @@ namespace fs = std::filesystem;
 /// A switch that is to be followed, and what it begins at.
 struct Candidate {
   ExploredBranch branch;
-  std::size_t parent = 0;   ///< of the diagram's branches; beyond them without one
-  std::size_t label = 0;    ///< of the parent's labels
-  int returns = 1;          ///< at grazing, one impact in so many
-  bool is_one_way = false;  ///< from a branch point, as the other way is known
+  std::size_t parent = 0;  ///< of the diagram's branches; beyond them without one
+  std::size_t label = 0;   ///< of the parent's labels
+  int returns = 1;         ///< at grazing, one impact in so many
 };
 
 class Explorer {
@@ -226,51 +225,54 @@ class Explorer {
     return false;
   }
 
-  /// Those that contain the sections of a run; nothing where that has not been found out, for the time was over.
-  std::optional<std::vector<KnownBranch>> known_branches(const std::vector<CataloguedSection>& sections) {
+  /// Of which known branches the sections of a run are parts, up to the first one that is new, or of all; nothing where
+  /// that has not been found out, as the time limit was reached.
+  std::optional<std::vector<KnownBranch>> known_branches(const std::vector<CataloguedSection>& sections, bool all) {
     const BranchRecognition recognition(catalogue_, commands_, loaded_.library->system(), runner_);
     std::vector<KnownBranch> known;
     for (const CataloguedSection& section : sections) {
       const std::optional<KnownBranch> same = recognition.branch_of(section);
       if (!same) return std::nullopt;
       known.push_back(*same);
+      if (!all && is_new(section, *same)) break;
     }
     return known;
   }
 
-  /// The one that contains all sections with more than one point; "" if there is none.
-  static std::string known_whole(const std::vector<CataloguedSection>& sections,
-                                 const std::vector<KnownBranch>& known) {
-    std::string whole;
-    for (std::size_t i = 0; i < sections.size(); ++i) {
-      if (known[i].name.empty() && sections[i].parameter.size() > 1) return "";
-      if (!known[i].name.empty()) whole = known[i].name;
+  static bool is_new(const CataloguedSection& section, const KnownBranch& known) {
+    return known.name.empty() && section.parameter.size() > 1;
+  }
+
+  /// The branch that contains all sections with more than one point; "" if there is none.
+  static std::string branch_of_all(const std::vector<CataloguedSection>& sections,
+                                   const std::vector<KnownBranch>& known) {
+    std::string name;
+    for (std::size_t i = 0; i < known.size(); ++i) {
+      if (is_new(sections[i], known[i])) return "";
+      if (!known[i].name.empty()) name = known[i].name;
     }
-    return whole;
+    return name;
   }
 
-  /// Which of the two ways from a branch point is a part of a known branch, if the other one is not.
-  static std::optional<std::size_t> known_way(const std::vector<KnownBranch>& known) {
-    if (known.size() != 2 || known[0].name.empty() == known[1].name.empty()) return std::nullopt;
-    const std::size_t way = known[0].name.empty() ? 1 : 0;
-    return known[way].by_states ? std::optional(way) : std::nullopt;
+  bool is_switch_in_both_directions(const Candidate& candidate) const {
+    return candidate.parent < diagram_.branches.size() &&
+           ExplorationCommands::goes_in_both_directions(candidate.branch.job);
   }
 
-  bool goes_both_ways_from_branch_point(const Candidate& candidate) const {
-    return candidate.parent < diagram_.branches.size() && !candidate.is_one_way &&
-           diagram_.branches[candidate.parent].labels[candidate.label].type == "BP";
-  }
-
-  /// Follows the other way alone.
-  bool take_other_way(Candidate candidate, std::size_t known_way, const std::string& known,
-                      std::vector<Candidate>& next) {
-    ExploredBranch& branch = candidate.branch;
-    candidate.is_one_way = true;
-    branch.job =
-        commands_.one_way(branch.job, known_way == 1, read_constants_file(commands_.file('r', branch.name)).step);
+  /// Of a switch in both directions the one that is new, where all of the other one is on a known branch.
+  std::optional<Candidate> new_direction(const Candidate& candidate, const std::vector<KnownBranch>& known) const {
+    if (!is_switch_in_both_directions(candidate) || known.size() != 2) return std::nullopt;
+    const bool first_is_known = !known[0].name.empty();
+    const KnownBranch& other = known[first_is_known ? 0 : 1];
+    if (!other.is_whole || !known[first_is_known ? 1 : 0].name.empty()) return std::nullopt;
+    Candidate one = candidate;
+    ExploredBranch& branch = one.branch;
+    std::optional<double> ds;
+    if (first_is_known) ds = -read_constants_file(commands_.file('r', branch.name)).step;
+    branch.job = commands_.one_direction(branch.job, ds);
     branch.name = branch.job.name;
-    branch.origin += fmt::format(", the other way is {}", known);
-    return take(candidate, runner_.run({branch.job}).front(), next);
+    branch.origin += fmt::format(", the other direction is {}", other.name);
+    return one;
   }
 
   /// Keeps a branch that is new, and adds what begins at its labels to the next round.
@@ -285,19 +287,22 @@ class Explorer {
     if (candidate.returns > 1 && admissible_points(commands_.file('d', branch.name)).only_at_start) return false;
     const PointFile points = read_point_file(commands_.file('p', branch.name));
     std::vector<CataloguedSection> sections = catalogued_sections(branch.name, points, commands_.monitors());
-    const std::optional<std::vector<KnownBranch>> found = known_branches(sections);
+    const std::optional<std::vector<KnownBranch>> found =
+        known_branches(sections, is_switch_in_both_directions(candidate));
     if (!found) return interrupt(candidate);
-    if (const std::string known = known_whole(sections, *found); !known.empty()) {
+    if (const std::string known = branch_of_all(sections, *found); !known.empty()) {
       set_outcome(candidate, known, "");
       if (candidate.parent >= diagram_.branches.size()) met_[branch.name.substr(0, branch.name.find('_'))] = known;
       diagram_.joins.push_back(fmt::format("{} ({}): {} again", branch.name, branch.origin, known));
       return false;
     }
-    if (const std::optional<std::size_t> way = known_way(*found); way && goes_both_ways_from_branch_point(candidate))
-      return take_other_way(candidate, *way, (*found)[*way].name, next);
     if (is_full()) {
       leave(candidate, branches_budget());
       return false;
+    }
+    if (const std::optional<Candidate> one = new_direction(candidate, *found)) {
+      const JobResult alone = runner_.run({one->branch.job}).front();
+      if (!alone.was_run || alone.succeeded) return take(*one, alone, next);
     }
     for (CataloguedSection& section : sections) catalogue_.add(std::move(section));
     describe_points(points, commands_.range(), branch);

@@ -66,19 +66,6 @@ std::vector<Index> rows_compared(const CataloguedSection& section) {
   return rows;
 }
 
-/// Does a branch have the parameter value at which a section begins?
-bool has_beginning(const std::vector<CataloguedSection>& sections, const std::string& branch,
-                   const CataloguedSection& section) {
-  constexpr double share = 0.01;
-  const auto [low, high] = std::minmax_element(section.parameter.begin(), section.parameter.end());
-  const double slack = share * (*high - *low), first = section.parameter.front();
-  return std::any_of(sections.begin(), sections.end(), [&](const CataloguedSection& known) {
-    if (known.branch != branch) return false;
-    const auto [least, most] = std::minmax_element(known.parameter.begin(), known.parameter.end());
-    return *least - slack <= first && first <= *most + slack;
-  });
-}
-
 /// As far as the monitors are known. Where a largest value moves from one maximum to another, interpolation is coarse.
 bool about_agree(const InterpolatedPoint& orbit, const std::vector<double>& monitors) {
   constexpr double coarse = 1e-2;
@@ -148,9 +135,20 @@ std::string OrbitCatalogue::branch_of(const CataloguedSection& section) const {
     if (branches.empty() && ++missing > 1) return "";
     if (!branches.empty()) last = std::move(branches);
   }
-  const auto found = std::find_if(last.begin(), last.end(),
-                                  [&](const std::string& branch) { return has_beginning(sections_, branch, section); });
+  const auto found =
+      std::find_if(last.begin(), last.end(), [&](const std::string& branch) { return has_beginning(branch, section); });
   return found == last.end() ? "" : *found;
+}
+
+bool OrbitCatalogue::has_beginning(const std::string& branch, const CataloguedSection& section) const {
+  constexpr double share = 0.01;
+  const auto [low, high] = std::minmax_element(section.parameter.begin(), section.parameter.end());
+  const double slack = share * (*high - *low), first = section.parameter.front();
+  return std::any_of(sections_.begin(), sections_.end(), [&](const CataloguedSection& known) {
+    if (known.branch != branch) return false;
+    const auto [least, most] = std::minmax_element(known.parameter.begin(), known.parameter.end());
+    return *least - slack <= first && first <= *most + slack;
+  });
 }
 
 std::vector<std::string> OrbitCatalogue::branches_near(const CataloguedSection& section) const {

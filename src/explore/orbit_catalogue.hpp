@@ -59,6 +59,8 @@ class OrbitCatalogue {
   /// Branches that it may be a part of: numbers of three of five orbits are near, to 5 errors of interpolation and
   /// 1e-4 of their size. In the order in which they were added.
   std::vector<std::string> branches_near(const CataloguedSection& section) const;
+  /// Does a branch have the parameter value at which a section begins?
+  bool has_beginning(const std::string& branch, const CataloguedSection& section) const;
   /// Where a branch passes the parameter value of point `row` of `like` with numbers as near as that.
   std::vector<BranchPlace> places_near(const std::string& branch, const CataloguedSection& like,
                                        Eigen::Index row) const;
