@@ -75,7 +75,7 @@ class Expansion {
     } else {  // the plane goes through x_s(1)
       Eigen::VectorXd gradient(n_);
       system_.section_gradient(s, x_.end(s), x_.par.data(), gradient.data());
-      put(Eigen::VectorXd::Constant(1, m_ == 0 ? 0.0 : gradient.dot(states.col(m_))));
+      put(Eigen::VectorXd::Constant(1, gradient.dot(states.col(m_))));
     }
     Parts jump = evaluate(FunctionKind::jump, index(s).jump, states);
     system_.clear_absent(s, jump.data(), 8);

@@ -23,7 +23,7 @@ class NodalExpansion {
  public:
   explicit NodalExpansion(const DefiningSystem& system) : system_(system) {}
 
-  /// Part number m of the equations at x. Not finite where the problem's functions are not.
+  /// Part number m > 0 of the equations at x. Not finite where the problem's functions are not.
   Eigen::VectorXd part(const Orbit& x, const NodalParts& parts, int m) const;
 
  private:

@@ -43,12 +43,12 @@ class SingularEquations {
  public:
   virtual ~SingularEquations() = default;
 
-  /// g at x, to which the calls below refer until the next one; nothing where the equations are more than simply
-  /// singular, or not finite.
+  /// g at x, to which the calls below refer until the next one; nothing where no simple critical value is near, or
+  /// something is not finite.
   virtual std::optional<ReducedEquation> reduce(const Orbit& x) = 0;
   /// c at that point, with the errors of sums.
   virtual Coefficient cubic() = 0;
-  /// Newton's step from that point to F + zeta b = 0 with these changes of y and p: the largest change of an unknown.
+  /// Newton's step from that point to F + zeta b = 0 with these changes of y and p: the largest change in u.
   virtual double find_step(double y, double s) = 0;
   /// That step; x is the orbit of reduce().
   virtual void move(Orbit& x) const = 0;

@@ -56,13 +56,13 @@ bool CondensedOrbit::correct(const Eigen::VectorXd& q, Orbit& x) {
   std::optional<Eigen::Index> parameter;
   for (int k = 0; k < most_iterations; ++k) {
     if (!linearise(x)) return false;
-    residual(x);
+    const RowWeights& rows = residual(x);
     if (!is_fold(critical_)) {
-      forms_.solve(rows_, change);
+      forms_.solve(rows, change);
     } else {
       CriticalVectors vectors;
       if (!parameter) parameter = forms_.find_critical(critical_, vectors) ? forms_.parameter_across(vectors) : 0;
-      forms_.solve_across(rows_, q, *parameter, change);
+      forms_.solve_across(rows, q, *parameter, change);
     }
     const double moved = std::max(change.states.lpNorm<Eigen::Infinity>(), change.durations.lpNorm<Eigen::Infinity>());
     const double size = moved / (1.0 + x.states.cwiseAbs().maxCoeff());

@@ -32,9 +32,9 @@ std::optional<CriticalDirection> critical_direction(const Eigen::MatrixXd& a) {
   return result;
 }
 
-Vector with_parameter(const Vector& v, double parameter) {
+Vector with_entry(const Vector& v, double last) {
   Vector result(v.size() + 1);
-  result << v, parameter;
+  result << v, last;
   return result;
 }
 
@@ -55,8 +55,8 @@ class EquilibriumEquations final : public SingularEquations {
     bordered_.bottomLeftCorner(1, n) = q_.transpose();
     ReducedEquation g;
     g.y = found->lambda;
-    v_ = with_parameter(q_, 0.0);
-    u_ = with_parameter(solve(-forms_->by_parameter(), g.s), 1.0);
+    v_ = with_entry(q_, 0.0);
+    u_ = with_entry(solve(-forms_->by_parameter(), g.s), 1.0);
     along_v_ = forms_->second_with_parameter(v_, v_);
     g.yy = weighted(along_v_);
     g.ys = weighted(forms_->second_with_parameter(v_, u_));
@@ -65,14 +65,14 @@ class EquilibriumEquations final : public SingularEquations {
   }
   Coefficient cubic() override {
     double excess = 0.0;
-    const Vector curvature = with_parameter(solve(-along_v_, excess), 0.0);
+    const Vector curvature = with_entry(solve(-along_v_, excess), 0.0);
     const Coefficient third = weighted(forms_->third(q_, q_, q_));
     const Coefficient bent = weighted(3.0 * forms_->second_with_parameter(v_, curvature));
     return {(third.value + bent.value) / 6.0, (third.uncertainty + bent.uncertainty) / 6.0};
   }
   double find_step(double y, double s) override {
     double excess = 0.0;
-    step_ = with_parameter(solve(-forms_->field(), excess), 0.0) + y * v_ + s * u_;
+    step_ = with_entry(solve(-forms_->field(), excess), 0.0) + y * v_ + s * u_;
     return step_.head(q_.size()).lpNorm<Eigen::Infinity>();
   }
   void move(Orbit& x) const override {
@@ -83,7 +83,7 @@ class EquilibriumEquations final : public SingularEquations {
 
  private:
   Vector solve(const Vector& right, double& excess) const {
-    const Vector solution = tchat::solve(bordered_, with_parameter(right, 0.0));
+    const Vector solution = tchat::solve(bordered_, with_entry(right, 0.0));
     excess = solution(right.size());
     return solution.head(right.size());
   }

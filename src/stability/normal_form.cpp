@@ -14,7 +14,6 @@ namespace {
 
 using Complex = std::complex<double>;
 using Vector = Eigen::VectorXd;
-using ComplexVector = Eigen::VectorXcd;
 
 /// A coefficient with the error of sums, the vector q that it belongs to, and the multiplier itself.
 struct Found {
@@ -41,30 +40,32 @@ class OrbitEquations final : public SingularEquations {
         orbit_(system, shape, 1.0),
         along_parameter_(orbit_.forms().make_vector()),
         by_vector_(along_parameter_),
-        by_other_(along_parameter_),
+        by_change_(along_parameter_),
         curvature_(along_parameter_),
         step_(along_parameter_) {}
 
   std::optional<ReducedEquation> reduce(const Orbit& x) override {
     CriticalVectors vectors;
-    if (!orbit_.linearise(x) || !forms().find_critical(1.0, vectors)) return std::nullopt;
-    forms().take(vectors);
+    if (!orbit_.linearise(x) || !forms().find_critical(1.0, vectors) || vectors.multiplier.imag() != 0.0)
+      return std::nullopt;
+    forms().set_vectors(vectors);
     x_ = &x;
     ReducedEquation g;
     g.y = vectors.multiplier.real() - 1.0;
     g.s = forms().solve_along_parameter(along_parameter_);
     forms().differentiate(vector(), by_vector_);
-    forms().differentiate(along_parameter_, by_other_);
+    forms().differentiate(along_parameter_, by_change_);
     g.yy = derivative(by_vector_, vector());
     g.ys = derivative(by_vector_, along_parameter_);
-    g.ss = derivative(by_other_, along_parameter_);
+    g.ss = derivative(by_change_, along_parameter_);
     return g;
   }
   Coefficient cubic() override {
-    forms().solve_beside(forms().second_along_vector(), curvature_);
-    const Product third = forms().third_along_vector();
+    const ReturnMapForms::AlongVector along = forms().find_along_vector();
+    forms().solve_beside(along.second, curvature_);
     const Coefficient bent = derivative(by_vector_, curvature_);
-    return {(3.0 * bent.value - third.value.real()) / 6.0, (3.0 * bent.uncertainty + error() * third.size) / 6.0};
+    return {(3.0 * bent.value - along.third.value.real()) / 6.0,
+            (3.0 * bent.uncertainty + error() * along.third.size) / 6.0};
   }
   double find_step(double y, double s) override {
     forms().solve_beside(orbit_.residual(*x_), step_);
@@ -89,8 +90,8 @@ class OrbitEquations final : public SingularEquations {
   const DefiningSystem& system_;
   CondensedOrbit orbit_;
   const Orbit* x_ = nullptr;
-  OrbitVector along_parameter_;       // U
-  OrbitVector by_vector_, by_other_;  // -W F''(V, .) and -W F''(U, .)
+  OrbitVector along_parameter_;        // U
+  OrbitVector by_vector_, by_change_;  // -W F''(V, .) and -W F''(U, .)
   OrbitVector curvature_, step_;
 };
 
@@ -102,25 +103,23 @@ double difference(const Found& a, const Found& b, Complex critical) {
 
 /// `other`, which has another mesh, moved by a step of this relative size along the tangent at x. It is an orbit to
 /// first order.
-Orbit moved_along(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent, Orbit other, double size) {
+Orbit along_branch(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent, Orbit other, double size) {
   double fastest = tangent.states.cwiseAbs().maxCoeff() / (1.0 + x.states.cwiseAbs().maxCoeff());
   for (std::size_t k = 0; k < system.free_parameters().size(); ++k)
     fastest = std::max(fastest, std::abs(tangent.globals(static_cast<Eigen::Index>(k))) /
                                     (1.0 + std::abs(x.par(system.free_parameters()[k] - 1))));
   const double step = size / fastest;
   other.states += step * interpolate_states(tangent.states, x.shape, x.mesh, other.shape, other.mesh);
-  for (int s = 0; s < x.shape.segments; ++s) other.duration(s) += step * tangent.durations(s);
-  for (std::size_t k = 0; k < system.free_parameters().size(); ++k)
-    other.par(system.free_parameters()[k] - 1) += step * tangent.globals(static_cast<Eigen::Index>(k));
+  advance_parameters(other, step, tangent, system.free_parameters());
   return other;
 }
 
-/// The form beside x along the branch, so near that the multiplier is still the one nearest to the critical value:
-/// close to grazing it changes by far more than the orbit.
+/// The form beside x along the branch, so near that the multiplier is still near the critical value: close to grazing
+/// it changes by far more than the orbit.
 std::optional<Found> form_beside(const DefiningSystem& system, CondensedOrbit& coarse, const Orbit& x,
                                  const OrbitVector& tangent, const Orbit& other, Complex critical) {
   for (const double size : {1e-5, 1e-7, 1e-9})
-    if (std::optional<Found> found = form_of(system, coarse, moved_along(system, x, tangent, other, size), critical))
+    if (std::optional<Found> found = form_of(system, coarse, along_branch(system, x, tangent, other, size), critical))
       return found;
   return std::nullopt;
 }

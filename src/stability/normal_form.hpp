@@ -15,8 +15,8 @@
 /// positive, which fixes the sign of a.
 ///
 /// No derivative of the map is formed. With M(mu) of nodal_system.hpp the whole orbit is expanded
-/// (return_map_forms.hpp): M(mu) V = 0 and W M(mu) = 0 are q and p on all nodes and rows, M(1) H = -(the part e_1 e_2
-/// of V, V) is the second term, and c = -W (the part e_1 e_2 e_3 of V, V, V, H, H, H) / 6: solutions of linear problems
+/// (return_map_forms.hpp): M(mu) V = 0 and W M(mu) = 0 are q and p on all nodes and rows, M(1) H = -F''(V, V) is the
+/// second term, F the equations, and c = -W (F'''(V, V, V) + 3 F''(V, H)) / 6: solutions of linear problems
 /// that are as well posed as the orbit's own, however much it contracts or expands. One factorisation of M(mu_0) serves
 /// all: that of another mu differs in n rows. mu_0 is 1, at a fold -1.
 #pragma once

@@ -50,11 +50,4 @@ Orbit on_every_second_point(const Orbit& x) {
   return coarse;
 }
 
-void move_orbit(const DefiningSystem& system, Orbit& x, const Vector& change, double dp) {
-  const Eigen::Index of_states = x.states.size();
-  x.states += Eigen::Map<const Eigen::MatrixXd>(change.data(), x.states.rows(), x.states.cols());
-  for (int s = 0; s < x.shape.segments; ++s) x.duration(s) += change(of_states + s);
-  x.par(system.free_parameters().front() - 1) += dp;
-}
-
 }  // namespace tchat

@@ -1,5 +1,5 @@
-/// What coefficients of normal forms of an orbit are made of: derivatives of its equations, and the same orbit on a
-/// coarser mesh, which shows how well they are known.
+/// What coefficients of resonances of an orbit are made of, derivatives of its equations; and for all coefficients the
+/// same orbit on a coarser mesh, which shows how well they are known.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,11 +30,10 @@ class OrbitForms {
 
 /// True for the multiplier 1.
 bool is_fold(std::complex<double> critical);
-/// Where M(mu) is factored for a critical multiplier (ShiftedOrbit).
+/// Where M(mu) is factored for a critical multiplier.
 double shift_for(std::complex<double> critical);
 
 /// Interpolated.
 Orbit on_every_second_point(const Orbit& x);
-/// By a change of the nodes and durations, and of the first free parameter.
-void move_orbit(const DefiningSystem& system, Orbit& x, const Eigen::VectorXd& change, double dp);
+
 }  // namespace tchat

@@ -220,7 +220,7 @@ void ReturnMapForms::solve(const RowWeights& rows, OrbitVector& h) {
 
 /// From solutions with S(mu_0), for a right-hand side (`ends`) and for a column, to the one of S(1) ends + factor
 /// column = right-hand side with q' v_1(0) = 0: returns the factor.
-double ReturnMapForms::put_across(const Vector& column, const Vector& q, Vector& ends) const {
+double ReturnMapForms::put_bordered(const Vector& column, const Vector& q, Vector& ends) const {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n_ + 1, n_ + 1);
   matrix.topLeftCorner(n_, n_) = Eigen::MatrixXd::Identity(n_, n_) + (1.0 - shift_) * closing_.topRows(n_);
   matrix.topRightCorner(n_, 1) = column.head(n_);
@@ -238,14 +238,14 @@ void ReturnMapForms::solve_across(const RowWeights& rows, const Vector& q, Eigen
   lu_.solve(rhs_.data(), by_parameter.data());
   solve_ends(rows, ends_);
   h.globals.setZero();
-  h.globals(k) = put_across(by_parameter, q, ends_);
+  h.globals(k) = put_bordered(by_parameter, q, ends_);
   condensed_->extend_condensed(ends_.data(), h);
 }
 
 double ReturnMapForms::solve_beside(const RowWeights& rows, OrbitVector& h) {
   const Vector q = right_vector().states.col(0);
   solve_ends(rows, ends_);
-  const double zeta = put_across(closing_ * q, q, ends_);
+  const double zeta = put_bordered(closing_ * q, q, ends_);
   h.globals.setZero();
   condensed_->extend_condensed(ends_.data(), h);
   return zeta;
@@ -256,19 +256,17 @@ double ReturnMapForms::solve_along_parameter(OrbitVector& h) {
   map_.parameter_column(*condensed_, *x_, 0, rhs_.data());
   rhs_ = -rhs_;
   lu_.solve(rhs_.data(), ends_.data());
-  const double zeta = put_across(closing_ * q, q, ends_);
+  const double zeta = put_bordered(closing_ * q, q, ends_);
   h.globals.setZero();
   h.globals(0) = 1.0;
   condensed_->extend(ends_.data(), h);
   return zeta;
 }
 
-const RowWeights& ReturnMapForms::second_along_vector() {
+ReturnMapForms::AlongVector ReturnMapForms::find_along_vector() {
   find_products();
-  return second_.front();
+  return {second_.front(), contract(weights_.front(), third_.front())};
 }
-
-Product ReturnMapForms::third_along_vector() const { return contract(weights_.front(), third_.front()); }
 
 Eigen::Index ReturnMapForms::parameter_across(const CriticalVectors& vectors) {
   Vector sizes(system_.free_count());
@@ -361,6 +359,7 @@ Product ReturnMapForms::on_curve(const CriticalVectors& vectors, Complex critica
   OrbitVector& row = rows_.front();
   row.states = factor * growth.states;
   row.durations = factor * growth.durations;
+  row.globals.setZero();
   if (second_.size() > 1) return real_cube_of_pair(critical);
   keep_planes(weights_.front(), vectors_.front(), 1.0, row);
   return cube();

@@ -63,8 +63,8 @@ class ReturnMapForms {
   /// The free parameter that moves the fold of these vectors the most. Allocates.
   Eigen::Index parameter_across(const CriticalVectors& vectors);
 
-  /// Normalised vectors of the multiplier 1, for the calls below, which allocate.
-  void take(const CriticalVectors& vectors) { put_vectors(vectors); }
+  /// Normalised vectors of the multiplier 1, for the calls below, which allocate: forms that are not for a pair.
+  void set_vectors(const CriticalVectors& vectors) { put_vectors(vectors); }
   const OrbitVector& right_vector() const { return vectors_.front(); }  ///< V
   /// M(1) h + zeta E q = -rows with q' h_1(0) = 0, q = V_1(0): returns zeta.
   double solve_beside(const RowWeights& rows, OrbitVector& h);
@@ -72,10 +72,12 @@ class ReturnMapForms {
   double solve_along_parameter(OrbitVector& h);
   /// row = -W F''(v, .), F the equations; v.globals are read.
   void differentiate(const OrbitVector& v, OrbitVector& row) { differentiate(weights_.front(), v, row); }
-  /// F''(V, V).
-  const RowWeights& second_along_vector();
-  /// W F'''(V, V, V), after second_along_vector().
-  Product third_along_vector() const;
+  /// F''(V, V), until the next call, and W F'''(V, V, V).
+  struct AlongVector {
+    const RowWeights& second;
+    Product third;
+  };
+  AlongVector find_along_vector();
 
  private:
   using Vector = Eigen::VectorXd;
@@ -86,7 +88,7 @@ class ReturnMapForms {
   void find_products();
   void keep_planes(const RowWeights& weights, const OrbitVector& v, double factor, OrbitVector& row);
   void solve_ends(const RowWeights& rows, Vector& ends);
-  double put_across(const Vector& column, const Vector& q, Vector& ends) const;
+  double put_bordered(const Vector& column, const Vector& q, Vector& ends) const;
   void differentiate(const RowWeights& weights, const OrbitVector& v, OrbitVector& row);
   void combine_squares();
   void solve_twice(Complex mu);

@@ -107,6 +107,24 @@ TEST_CASE("branch point of periodic orbits, transcritical: in closed form, and t
   }
 }
 
+TEST_CASE("branch point of cycles without a section, in closed form: the parameter is in the field") {
+  // On the cycle of radius sqrt(1 + p) and period T = 2 / (1 + c p) the map of z is z -> e^(p T) z - T z^2 at p = 0.
+  const Workspace workspace;
+  simulate(workspace, "cycle", R"(par p=-0.1, c=0.5, k=0.3
+init x=0.9
+s = 1 + p - x^2 - y^2
+w = 3.14159265358979324*(1 + c*p)
+x' = s*x - w*y
+y' = s*y + w*x
+z' = p*z - z^2 + k*z*s
+)",
+           "--free p");
+  workspace.succeed("run cycle -q -c cycle -d cycle -o cycle" + steps);
+  const PrintedForm form = form_at(workspace, "cycle", "BP");
+  check(form, "a", -2.0, ", transcritical: stability passes from one branch to the other");
+  CHECK(rate(form) == Approx(2.0).epsilon(1e-9));
+}
+
 TEST_CASE("coefficients of normal forms in the tables of labels and of points") {
   const Workspace workspace;
   simulate(workspace, "fork", forking_map, "--state -0.09,0,0 --free p");
