@@ -43,7 +43,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A switch that is to be followed, and what it begins at.
-struct Candidate {
+struct BranchCandidate {
   ExploredBranch branch;
   std::size_t parent = 0;  ///< of the diagram's branches; beyond them without one
   std::size_t label = 0;   ///< of the parent's labels
@@ -132,9 +132,9 @@ class Explorer {
   }
 
   /// A branch through an attractor.
-  Candidate start_at(const SweepAttractor& attractor, const std::string& name, double value,
-                     const std::string& words) const {
-    Candidate candidate;
+  BranchCandidate start_at(const SweepAttractor& attractor, const std::string& name, double value,
+                           const std::string& words) const {
+    BranchCandidate candidate;
     candidate.parent = std::string::npos;
     candidate.branch.name = name;
     candidate.branch.origin =
@@ -149,8 +149,8 @@ class Explorer {
   }
 
   /// A branch for each attractor that repeats itself or rests, of the first sweep.
-  std::vector<Candidate> seeds() {
-    std::vector<Candidate> list;
+  std::vector<BranchCandidate> seeds() {
+    std::vector<BranchCandidate> list;
     const Sweep& sweep = sweeps_.front();
     for (const SweepAttractor& attractor : sweep.samples.table().attractors) {
       if (!is_followed(attractor)) continue;
@@ -165,8 +165,8 @@ class Explorer {
   }
 
   /// Attractors that lie on no branch yet, one of each number that has not been tried at its value.
-  std::vector<Candidate> more_seeds() {
-    std::vector<Candidate> list;
+  std::vector<BranchCandidate> more_seeds() {
+    std::vector<BranchCandidate> list;
     for (const Sweep& sweep : sweeps_) {
       std::set<int> numbers;
       sweep.samples.for_each([&](const SweptAttractor& sample) {
@@ -184,17 +184,17 @@ class Explorer {
   }
 
   /// Round after round; true where a branch has been found.
-  bool follow(std::vector<Candidate> round) {
+  bool follow(std::vector<BranchCandidate> round) {
     bool found = false;
     while (!round.empty() && goes_on()) {
       if (is_full()) {
-        for (const Candidate& candidate : round) leave(candidate, branches_budget());
+        for (const BranchCandidate& candidate : round) leave(candidate, branches_budget());
         break;
       }
       std::vector<CommandJob> jobs;
-      for (const Candidate& candidate : round) jobs.push_back(candidate.branch.job);
+      for (const BranchCandidate& candidate : round) jobs.push_back(candidate.branch.job);
       const std::vector<JobResult> results = runner_.run(jobs);
-      std::vector<Candidate> next;
+      std::vector<BranchCandidate> next;
       for (std::size_t i = 0; i < round.size(); ++i) found = take(round[i], results[i], next) || found;
       round = std::move(next);
     }
@@ -206,12 +206,12 @@ class Explorer {
   std::string segments_budget() const { return fmt::format("--segments {}", request_.segments); }
 
   /// A budget leaves it.
-  void leave(const Candidate& candidate, const std::string& budget) {
+  void leave(const BranchCandidate& candidate, const std::string& budget) {
     ++diagram_.left[budget];
     set_outcome(candidate, "", "left by " + budget);
   }
 
-  void set_outcome(const Candidate& candidate, const std::string& leads_to, const std::string& remark) {
+  void set_outcome(const BranchCandidate& candidate, const std::string& leads_to, const std::string& remark) {
     if (candidate.parent >= diagram_.branches.size()) return;
     if (candidate.returns > 1) return;
     ExploredLabel& label = diagram_.branches[candidate.parent].labels[candidate.label];
@@ -219,7 +219,7 @@ class Explorer {
     label.remark = remark;
   }
 
-  bool interrupt(const Candidate& candidate) {
+  bool interrupt(const BranchCandidate& candidate) {
     diagram_.complete = false;
     set_outcome(candidate, "", "not followed: the exploration was interrupted");
     return false;
@@ -254,18 +254,19 @@ class Explorer {
     return name;
   }
 
-  bool is_switch_in_both_directions(const Candidate& candidate) const {
+  bool is_switch_in_both_directions(const BranchCandidate& candidate) const {
     return candidate.parent < diagram_.branches.size() &&
            ExplorationCommands::goes_in_both_directions(candidate.branch.job);
   }
 
   /// Of a switch in both directions the one that is new, where all of the other one is on a known branch.
-  std::optional<Candidate> new_direction(const Candidate& candidate, const std::vector<KnownBranch>& known) const {
+  std::optional<BranchCandidate> new_direction(const BranchCandidate& candidate,
+                                               const std::vector<KnownBranch>& known) const {
     if (!is_switch_in_both_directions(candidate) || known.size() != 2) return std::nullopt;
     const bool first_is_known = !known[0].name.empty();
     const KnownBranch& other = known[first_is_known ? 0 : 1];
     if (!other.is_whole || !known[first_is_known ? 1 : 0].name.empty()) return std::nullopt;
-    Candidate one = candidate;
+    BranchCandidate one = candidate;
     ExploredBranch& branch = one.branch;
     std::optional<double> ds;
     if (first_is_known) ds = -read_constants_file(commands_.file('r', branch.name)).step;
@@ -276,7 +277,7 @@ class Explorer {
   }
 
   /// Keeps a branch that is new, and adds what begins at its labels to the next round.
-  bool take(const Candidate& candidate, const JobResult& result, std::vector<Candidate>& next) {
+  bool take(const BranchCandidate& candidate, const JobResult& result, std::vector<BranchCandidate>& next) {
     ExploredBranch branch = candidate.branch;
     if (!result.was_run) return interrupt(candidate);
     if (!result.succeeded) {
@@ -300,7 +301,7 @@ class Explorer {
       leave(candidate, branches_budget());
       return false;
     }
-    if (const std::optional<Candidate> one = new_direction(candidate, *found)) {
+    if (const std::optional<BranchCandidate> one = new_direction(candidate, *found)) {
       const JobResult alone = runner_.run({one->branch.job}).front();
       if (!alone.was_run || alone.succeeded) return take(*one, alone, next);
     }
@@ -316,7 +317,7 @@ class Explorer {
   }
 
   /// The commands that follow the labels of a branch; none from tori.
-  void add_switches(std::size_t at, std::vector<Candidate>& next) {
+  void add_switches(std::size_t at, std::vector<BranchCandidate>& next) {
     const std::string name = diagram_.branches[at].name;
     RunSettings settings = read_constants_file(commands_.file('r', name));
     const HybridSystem& system = loaded_.library->system();
@@ -356,10 +357,10 @@ class Explorer {
   }
 
   void add_switch(std::size_t at, const std::string& type, const std::string& command, const RunSettings& settings,
-                  std::vector<Candidate>& next) {
+                  std::vector<BranchCandidate>& next) {
     const ExploredBranch& parent = diagram_.branches[at];
     const ExploredLabel& label = parent.labels.back();
-    Candidate candidate;
+    BranchCandidate candidate;
     candidate.parent = at;
     candidate.label = parent.labels.size() - 1;
     ExploredBranch& branch = candidate.branch;
@@ -381,7 +382,7 @@ class Explorer {
   }
 
   /// At a grazing point, orbits with one impact in more than one return.
-  void add_returns(Candidate candidate, const SwitchPoint& at, std::vector<Candidate>& next) const {
+  void add_returns(BranchCandidate candidate, const SwitchPoint& at, std::vector<BranchCandidate>& next) const {
     const std::string origin = candidate.branch.origin;
     candidate.branch.has_returns = true;
     for (candidate.returns = 2; candidate.returns <= request_.returns.value_or(1); ++candidate.returns) {

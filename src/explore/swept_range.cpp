@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "setup/problem_setup.hpp"
+#include "sweep/sweep_grid.hpp"
 #include "text/number.hpp"
 #include "text/user_error.hpp"
 #include "text/words.hpp"
@@ -35,10 +37,10 @@ SweptRange read_swept_range(const std::string& option, const std::string& text, 
 }
 
 int find_parameter(const std::string& option, const HybridSystem& system, SweptRange& range) {
-  const int index = system.parameter_index(range.parameter);
-  const int number = index > 0 ? index : parse_integer(range.parameter).value_or(0);
-  if (number < 1 || number > system.parameters())
-    throw UserError(fmt::format("{} {}: {} has no parameter of this name", option, range.parameter, system.name()));
+  range.parameter = bare_name(range.parameter);
+  const int number = parameter_index(system, range.parameter, option);
+  if (number > system.parameters())
+    throw UserError(fmt::format("{} {}: a duration is no parameter of a simulation", option, range.parameter));
   if (const std::string name = system.parameter_name(number); system.parameter_index(name) == number)
     range.parameter = name;
   return number;

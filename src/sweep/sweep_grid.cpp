@@ -24,12 +24,6 @@ double read_end(const std::string& word, const char* which, const std::string& t
   refuse_over(text, fmt::format("{} '{}' is no finite number", which, word));
 }
 
-/// "PAR(mu)" is "mu".
-std::string bare_name(const std::string& name) {
-  const bool is_par = (name.starts_with("PAR(") || name.starts_with("par(")) && name.ends_with(")");
-  return is_par ? name.substr(4, name.size() - 5) : name;
-}
-
 /// Index of the state of this name; nothing when there is none.
 std::optional<int> find_state(const HybridSystem& system, const std::string& name) {
   for (int k = 1; k <= system.dimension(); ++k)
@@ -38,6 +32,11 @@ std::optional<int> find_state(const HybridSystem& system, const std::string& nam
 }
 
 }  // namespace
+
+std::string bare_name(const std::string& name) {
+  const bool is_par = (name.starts_with("PAR(") || name.starts_with("par(")) && name.ends_with(")");
+  return is_par ? name.substr(4, name.size() - 5) : name;
+}
 
 SweepTarget parse_over(const HybridSystem& system, const std::string& text) {
   const std::size_t equals = text.rfind('=');

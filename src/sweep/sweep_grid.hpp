@@ -17,6 +17,9 @@ struct SweepTarget {
   int position = 1;  ///< index of the parameter or state, from 1
 };
 
+/// "mu" of "PAR(mu)", or of "mu".
+std::string bare_name(const std::string& name);
+
 /// "mu=-0.82:-0.79:301", "PAR(1)=...", "x1=-2:2:400", a parameter's name before a state's. Throws UserError, one
 /// sentence with the cure.
 SweepTarget parse_over(const HybridSystem& system, const std::string& text);

@@ -260,6 +260,6 @@ TEST_CASE("ranges that are none are refused with the form") {
     CHECK(outcome.status == 2);
     CHECK(outcome.text().find("as alpha=2.9:3.3") != std::string::npos);
   }
-  CHECK(workspace.tchat("explore linosc --over beta=1:2").text().find("no parameter of this name") !=
+  CHECK(workspace.tchat("explore linosc --over beta=1:2").text().find("is no parameter of problem") !=
         std::string::npos);
 }
