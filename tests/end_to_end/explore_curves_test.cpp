@@ -352,7 +352,7 @@ TEST_CASE("second ranges that are none are refused with the form") {
   };
   for (const char* const words : {"omega", "omega=3:2", "omega=1:3:100"})
     CHECK(refusal(words).find("as alpha=2.9:3.3") != std::string::npos);
-  CHECK(refusal("beta=1:2").find("no parameter of this name") != std::string::npos);
+  CHECK(refusal("beta=1:2").find("is no parameter of problem") != std::string::npos);
   CHECK(refusal("alpha=1:2").find("the parameter of --over") != std::string::npos);
   CHECK(refusal("omega=3:4").find("the diagram is at omega = 2, outside of this range") != std::string::npos);
 }

@@ -231,7 +231,7 @@ class Explored(unittest.TestCase):
                                and_={"omega": (1, 2, 3)})
         for over in ({}, {"alpha": (2, 3), "omega": (1, 2)}):
             self.assertRaisesRegex(tchat.Error, "over one parameter", oscillator.explore, over=over)
-        self.assertRaisesRegex(tchat.Error, "no parameter of this name", oscillator.explore, over={"beta": (1, 2)})
+        self.assertRaisesRegex(tchat.Error, "is no parameter of problem", oscillator.explore, over={"beta": (1, 2)})
         self.assertRaisesRegex(tchat.Error, "what tchat explore -o none writes", tchat.Diagram, "none")
         pathlib.Path("other.json").write_text("{}")
         pathlib.Path("other.txt").write_text("")
