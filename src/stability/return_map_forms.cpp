@@ -142,7 +142,7 @@ bool ReturnMapForms::normalise(CriticalVectors& vectors) const {
 }
 
 Product ReturnMapForms::coefficient(const CriticalVectors& vectors, Complex critical) {
-  put_vectors(vectors);
+  set_vectors(vectors);
   find_rows();
   if (critical == 1.0) return square();
   find_products();
@@ -160,7 +160,7 @@ void ReturnMapForms::find_products() {
 }
 
 /// From the ends of segments to all nodes and rows.
-void ReturnMapForms::put_vectors(const CriticalVectors& vectors) {
+void ReturnMapForms::set_vectors(const CriticalVectors& vectors) {
   for (std::size_t part = 0; part < vectors_.size(); ++part) {
     if (part == 0) ends_ = vectors.right.real(), other_ends_ = vectors.left.real();
     if (part == 1) ends_ = vectors.right.imag(), other_ends_ = vectors.left.imag();
@@ -354,7 +354,7 @@ Product ReturnMapForms::cube_of_pair(Complex critical) {
 
 Product ReturnMapForms::on_curve(const CriticalVectors& vectors, Complex critical, const OrbitVector& growth,
                                  double factor) {
-  put_vectors(vectors);
+  set_vectors(vectors);
   find_products();
   OrbitVector& row = rows_.front();
   row.states = factor * growth.states;

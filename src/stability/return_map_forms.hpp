@@ -63,8 +63,9 @@ class ReturnMapForms {
   /// The free parameter that moves the fold of these vectors the most. Allocates.
   Eigen::Index parameter_across(const CriticalVectors& vectors);
 
-  /// Normalised vectors of the multiplier 1, for the calls below, which allocate: forms that are not for a pair.
-  void set_vectors(const CriticalVectors& vectors) { put_vectors(vectors); }
+  /// V and W for the calls below, which allocate: normalised vectors of the multiplier 1, in forms that are not for a
+  /// pair.
+  void set_vectors(const CriticalVectors& vectors);
   const OrbitVector& right_vector() const { return vectors_.front(); }  ///< V
   /// M(1) h + zeta E q = -rows with q' h_1(0) = 0, q = V_1(0): returns zeta.
   double solve_beside(const RowWeights& rows, OrbitVector& h);
@@ -83,7 +84,6 @@ class ReturnMapForms {
   using Vector = Eigen::VectorXd;
 
   void put_closing();
-  void put_vectors(const CriticalVectors& vectors);
   void find_rows();
   void find_products();
   void keep_planes(const RowWeights& weights, const OrbitVector& v, double factor, OrbitVector& row);

@@ -113,6 +113,14 @@ void check_resumed(const Workspace& workspace, const std::string& command, int k
     CHECK(workspace.read("killed/" + name) == workspace.read("one/" + name));
 }
 
+/// The tree of an exploration in the folder `one`.
+std::string explored(const Workspace& workspace, const std::string& arguments) {
+  const Outcome outcome = workspace.tchat("explore " + arguments + " -o one -j 2 -q");
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  return workspace.read("one.txt");
+}
+
 /// No orbit at a user value lies on two branches in the folder `one`. Returns how many there are.
 std::size_t count_different_orbits(const Workspace& workspace) {
   const std::vector<FoundOrbit> orbits = orbits_at_user_values(workspace, "one");
@@ -193,12 +201,9 @@ TEST_CASE("a branch that ends where an impact has velocity zero is known on anot
   // The branch of one maximum a period, which two others reach where they graze, turns where its maximum vanishes.
   const Workspace workspace;
   std::filesystem::copy(MEMS_SOURCE, workspace.file("mems.cpp"));
-  const Outcome outcome = workspace.tchat(
-      "explore mems --over V=0.355:0.445:19 --segments 7 --starts 0 DS=0.004 DSMAX=0.04 UZR={V:[0.38,0.4]} -o one -j 2 "
-      "-q");
-  INFO(outcome.text());
-  REQUIRE(outcome.status == 0);
-  INFO(workspace.read("one.txt"));
+  const std::string tree = explored(
+      workspace, "mems --over V=0.355:0.445:19 --segments 7 --starts 0 DS=0.004 DSMAX=0.04 UZR={V:[0.38,0.4]}");
+  INFO(tree);
   CHECK(count_different_orbits(workspace) > 8);
   for (const auto& entry : std::filesystem::directory_iterator(workspace.file("one"))) {
     INFO(entry.path());
@@ -210,12 +215,9 @@ TEST_CASE("where one direction from a branch point is known, the other one alone
   // Close to a contact the switch at the branch point leads back to the branch that it leaves.
   const Workspace workspace;
   std::filesystem::copy(RELAY_SOURCE, workspace.file("relay.cpp"));
-  const Outcome outcome = workspace.tchat(
-      "explore relay --over omega=7.15:7.5:15 PAR(zeta)=0.05 --starts 0 --branches 3 "
-      "UZR={omega:[7.18,7.25,7.29,7.35,7.45]} -o one -j 2 -q");
-  INFO(outcome.text());
-  REQUIRE(outcome.status == 0);
-  const std::string tree = workspace.read("one.txt");
+  const std::string tree = explored(workspace,
+                                    "relay --over omega=7.15:7.5:15 PAR(zeta)=0.05 --starts 0 --branches 3 "
+                                    "UZR={omega:[7.18,7.25,7.29,7.35,7.45]}");
   INFO(tree);
   CHECK(std::regex_search(tree, std::regex("-> a2_BP[0-9]+_(for|back)ward\n")));
   CHECK(count_different_orbits(workspace) > 12);
