@@ -5,10 +5,10 @@ namespace tchat {
 WeightedNorm::WeightedNorm(Eigen::VectorXd state_weights, ParameterVector parameter_weights)
     : state_weights_(std::move(state_weights)), parameter_weights_(std::move(parameter_weights)) {}
 
-WeightedNorm WeightedNorm::unit(int dimension, int segments) {
-  ParameterVector parameters(ParameterLayout(), segments);
+WeightedNorm WeightedNorm::unit(const OrbitShape& shape) {
+  ParameterVector parameters(ParameterLayout(), shape.segments);
   parameters.setOnes();
-  return {Eigen::VectorXd::Ones(dimension), std::move(parameters)};
+  return {Eigen::VectorXd::Ones(shape.dimension), std::move(parameters)};
 }
 
 MassIntervals mass_intervals(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& weights, int s) {

@@ -22,8 +22,8 @@ class WeightedNorm {
  public:
   /// `state_weights` has n entries, `parameter_weights` those of the orbit's PAR, all >= 0.
   WeightedNorm(Eigen::VectorXd state_weights, ParameterVector parameter_weights);
-  /// All weights 1, for a problem of at most 60 parameters.
-  static WeightedNorm unit(int dimension, int segments = 1);
+  /// All weights 1, for orbits of this shape and a problem of at most 60 parameters.
+  static WeightedNorm unit(const OrbitShape& shape);
 
   /// The dual vector <v, .> on the mesh of x, written to `row`.
   void dual(const Orbit& x, const CollocationRule& rule, const std::vector<int>& free_parameters, const OrbitVector& v,

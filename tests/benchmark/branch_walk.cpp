@@ -31,7 +31,7 @@ OrbitShape walk_shape(int segments, int intervals, int dimension) {
 BranchWalk::BranchWalk(const OrbitShape& shape, int steps_one_way)
     : system_(shape.dimension == 4 ? oscillator() : chain(shape.dimension), impacting_signature(shape.segments),
               {alpha}),
-      follower_(system_, shape, WeightedNorm::unit(shape.dimension), newton_settings, alpha),
+      follower_(system_, shape, WeightedNorm::unit(shape), newton_settings, alpha),
       floquet_(shape),
       point_(follower_.make_point(impacting_orbit(shape))),
       next_(point_),

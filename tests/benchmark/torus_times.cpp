@@ -90,7 +90,7 @@ class TorusWalk {
       : torus_(torus),
         shape_{torus.system->dimension(), orbits, intervals, collocation},
         system_(*torus.system, {{1, 1, 1}}, orbits, {omega_parameter, ParameterLayout().rotation()}),
-        follower_(system_, shape_, WeightedNorm::unit(shape_.dimension), newton, omega_parameter),
+        follower_(system_, shape_, WeightedNorm::unit(shape_), newton, omega_parameter),
         point_(follower_.make_point(start())),
         next_(point_) {
     if (!follower_.start_at_fixed_parameter(point_).converged()) throw std::runtime_error("no torus to start from");

@@ -68,7 +68,7 @@ class Walk {
  public:
   Walk(const Bifurcation& at, bool two_parameters)
       : system_(system_of_walk(at, two_parameters)),
-        follower_(*system_, at.orbit.shape, WeightedNorm::unit(at.orbit.shape.dimension), newton, at.parameter,
+        follower_(*system_, at.orbit.shape, WeightedNorm::unit(at.orbit.shape), newton, at.parameter,
                   two_parameters ? condition_of(at, *system_) : nullptr),
         floquet_(at.orbit.shape),
         point_(follower_.make_point(at.orbit)),

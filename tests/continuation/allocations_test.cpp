@@ -144,7 +144,7 @@ template <class Condition, class Multiplier>
 Counts steps_on_curve(const HybridSystem& hybrid, const Orbit& start, Multiplier multiplier) {
   give_solver_its_own_allocator();
   const PeriodicOrbitSystem system(hybrid, {{1, 1, 1}}, {1, 2});
-  PathFollower follower(system, start.shape, WeightedNorm::unit(start.shape.dimension), {9, 3, 1e-10, 1e-10}, 1,
+  PathFollower follower(system, start.shape, WeightedNorm::unit(start.shape), {9, 3, 1e-10, 1e-10}, 1,
                         std::make_unique<Condition>(system, start.shape, multiplier));
   PathPoint here = follower.make_point(start);
   REQUIRE(follower.start_by_minimum_norm(here).converged());
@@ -327,7 +327,7 @@ TEST_CASE("no allocation of our own along a grazing curve") {
   const double half = orbit.constants.period() / 2;
   const Orbit start = sampled_orbit({orbit.piece(0, half), orbit.piece(half, 2 * half)}, 4, 30, 4, orbit.par());
   const GrazingOrbitSystem system(linosc(), {{1, 3, 2}, {1, 1, 2}}, {2, 1}, 1);
-  PathFollower follower(system, start.shape, WeightedNorm::unit(start.shape.dimension), {9, 3, 1e-10, 1e-10}, 2);
+  PathFollower follower(system, start.shape, WeightedNorm::unit(start.shape), {9, 3, 1e-10, 1e-10}, 2);
   PathPoint here = follower.make_point(start);
   REQUIRE(follower.start_at_fixed_parameter(here).converged());
   const Counts counts = steps_after_the_first(follower, here, 0.05);
@@ -355,7 +355,7 @@ TEST_CASE("no allocation of our own along tori in grazing contact, rho free or f
       GENERATE(std::vector<int>{omega, wall, ParameterLayout().rotation()}, std::vector<int>{omega, 2, wall});
   const Torus torus(15, {4, 1, 10, 4});
   const TorusSystem system(system_of<PlanarTorus>(), {{1, 1, 1}}, 15, free);
-  PathFollower follower(system, torus.shape, WeightedNorm::unit(4), {12, 12, 1e-10, 1e-10}, omega,
+  PathFollower follower(system, torus.shape, WeightedNorm::unit(torus.shape), {12, 12, 1e-10, 1e-10}, omega,
                         std::make_unique<TorusContactCondition>(system, torus.shape, 0, 2));
   Orbit start = torus.start(2.0, 1e-6);
   start.par(wall - 1) = 1.0 / (1.0 - 1.0 / std::sqrt(5.0));

@@ -248,7 +248,7 @@ TEST_CASE("beyond the 1:1 resonance that it begins at a torus curve ends, it doe
   const PeriodicOrbitSystem defining(system, {{1, 1, 1}}, {2, 1});
   auto pair = std::make_unique<CriticalPair>(defining, shape, std::polar(1.0, 2 * pi * std::sqrt(1e-6)));
   const CriticalPair& condition = *pair;
-  PathFollower follower(defining, shape, WeightedNorm::unit(4), tight_newton(), 2, std::move(pair));
+  PathFollower follower(defining, shape, WeightedNorm::unit(shape), tight_newton(), 2, std::move(pair));
   PathPoint start = follower.make_point(sampled_orbit({{2 * pi, state}}, 4, 10, 4, parameters({0.0, -1e-6})));
   REQUIRE(follower.start_at_fixed_parameter(start).converged());
   Tests tests;
@@ -274,7 +274,7 @@ TEST_CASE("a torus curve that meets its mirror image ends there, in the 1:1 reso
   const PeriodicOrbitSystem defining(system_of<Takens>(), {{1, 1, 1}}, {2, 1});
   auto pair = std::make_unique<CriticalPair>(defining, shape, std::polar(1.0, 2 * pi * std::sqrt(2.0) * a));
   const CriticalPair& condition = *pair;
-  PathFollower follower(defining, shape, WeightedNorm::unit(4), tight_newton(), 2, std::move(pair));
+  PathFollower follower(defining, shape, WeightedNorm::unit(shape), tight_newton(), 2, std::move(pair));
   PathPoint start = follower.make_point(sampled_orbit({{2 * pi, state}}, 4, 10, 4, parameters({a * a, a * a})));
   REQUIRE(follower.start_at_fixed_parameter(start).converged());
   Tests tests = torus_curve_tests(condition);

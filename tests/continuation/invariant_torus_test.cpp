@@ -169,7 +169,7 @@ TEST_CASE("torus: a state that is an angle winds along the curve, and a return e
   CHECK(angle_states(hybrid, {{1, 1, 1}}, start.states.leftCols(5), start.par) == std::vector<Eigen::Index>{2});
 
   const TorusSystem system(hybrid, {{1, 1, 1}}, 31, {omega, ParameterLayout().rotation()}, winding);
-  PathFollower follower(system, start.shape, WeightedNorm::unit(3), {12, 12, 1e-12, 1e-12}, omega);
+  PathFollower follower(system, start.shape, WeightedNorm::unit(start.shape), {12, 12, 1e-12, 1e-12}, omega);
   PathPoint point = follower.make_point(start);
   REQUIRE(follower.start_at_fixed_parameter(point).converged());
   // 0.236^15 of the harmonics, mesh of order 8.

@@ -122,7 +122,8 @@ TEST_CASE("the duration as continuation parameter") {
   const OscillatorOrbit exact = nonimpacting_orbit(2.0, 3.0);
   const Orbit start = sampled_orbit({exact.piece(0, pi)}, 4, 50, 4, exact.par());
   const PeriodicOrbitSystem system(linosc(), {{1, 2, 2}}, {2});
-  PathFollower follower(system, start.shape, WeightedNorm::unit(4), tight_newton(), ParameterLayout().first_duration());
+  PathFollower follower(system, start.shape, WeightedNorm::unit(start.shape), tight_newton(),
+                        ParameterLayout().first_duration());
   PathPoint point = follower.make_point(start);
   point.orbit.duration(0) = 3.0;
   REQUIRE(follower.start_at_fixed_parameter(point).converged());

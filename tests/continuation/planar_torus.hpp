@@ -28,7 +28,7 @@ struct Torus {
   Torus(int orbits, const OrbitShape& one_return, std::vector<int> free = {omega, ParameterLayout().rotation()})
       : system(system_of<PlanarTorus>(), {{1, 1, 1}}, orbits, std::move(free)),
         shape{4, orbits, one_return.intervals, one_return.collocation},
-        follower(system, shape, WeightedNorm::unit(4), {12, 12, 1e-12, 1e-12}, omega) {}
+        follower(system, shape, WeightedNorm::unit(shape), {12, 12, 1e-12, 1e-12}, omega) {}
 
   /// The closed form, moved off by waves of this size.
   Orbit start(double w, double off) const {

@@ -23,7 +23,7 @@ bool equal(const Orbit& a, const Orbit& b) { return a.states == b.states && a.pa
 void check_steps(const HybridSystem& hybrid, const Orbit& start,
                  const std::function<std::unique_ptr<OrbitCondition>(const DefiningSystem&)>& condition) {
   const PeriodicOrbitSystem system(hybrid, {{1, 1, 1}}, {1, 2});
-  PathFollower follower(system, start.shape, WeightedNorm::unit(start.shape.dimension), newton, 1, condition(system));
+  PathFollower follower(system, start.shape, WeightedNorm::unit(start.shape), newton, 1, condition(system));
   PathPoint from = follower.make_point(start);
   REQUIRE(follower.start_by_minimum_norm(from).converged());
   PathPoint next = from;

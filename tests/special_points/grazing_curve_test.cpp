@@ -16,7 +16,7 @@ namespace {
 RecordedBranch continued(const GrazingOrbitSystem& system, const Orbit& start, double ds, double largest_step,
                          int points, Tests tests) {
   const int principal = system.free_parameters().front();
-  PathFollower follower(system, start.shape, WeightedNorm::unit(start.shape.dimension), tight_newton(), principal);
+  PathFollower follower(system, start.shape, WeightedNorm::unit(start.shape), tight_newton(), principal);
   PathPoint point = follower.make_point(start);
   REQUIRE(follower.start_at_fixed_parameter(point).converged());
   ContinuationSettings settings = branch_settings(start.shape, principal, ds, largest_step, points);

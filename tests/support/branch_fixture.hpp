@@ -19,7 +19,7 @@ class PeriodicOrbits {
   PeriodicOrbits(const HybridSystem& hybrid, const Signature& signature, int principal, const OrbitShape& shape,
                  const NewtonSettings& newton = tight_newton())
       : system(hybrid, signature, {principal}),
-        follower(system, shape, WeightedNorm::unit(shape.dimension), newton, principal),
+        follower(system, shape, WeightedNorm::unit(shape), newton, principal),
         floquet_(shape) {}
 
   /// Newton with the parameter fixed.

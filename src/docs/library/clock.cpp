@@ -81,7 +81,8 @@ int main() {
   const tchat::HybridSystem clock(*tchat::ProblemTable<Clock>::get("clock"));
   const tchat::PeriodicOrbitSystem equations(clock, {{1, 1, 1}}, {principal});  // field 1, event 1, jump 1
   const tchat::Orbit start = first_orbit(0.1);
-  tchat::PathFollower follower(equations, start.shape, tchat::WeightedNorm::unit(2), {12, 4, 1e-11, 1e-11}, principal);
+  tchat::PathFollower follower(equations, start.shape, tchat::WeightedNorm::unit(start.shape), {12, 4, 1e-11, 1e-11},
+                               principal);
   tchat::PathPoint first = follower.make_point(start);
   if (!follower.start_at_fixed_parameter(first).converged()) {
     std::puts("no orbit near the start");
