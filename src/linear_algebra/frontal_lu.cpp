@@ -28,10 +28,14 @@ class FrontalLu::Plan {
     last_.assign(at(size), -1);
     eliminated_.assign(at(size), false);
     entries_of_rows_.resize(at(size));
+    border_entries_.resize(at(size));
     for (std::size_t k = 0; k < rows.size(); ++k) {
       entries_of_rows_[at(rows[k])].push_back(static_cast<int>(k));
       const int group = groups[at(rows[k])];
-      if (group == border_row) continue;
+      if (group == border_row) {
+        border_entries_[at(columns[k])].push_back(static_cast<int>(k));
+        continue;
+      }
       int& first = first_[at(columns[k])];
       int& last = last_[at(columns[k])];
       first = std::min(first, group);
@@ -104,17 +108,18 @@ class FrontalLu::Plan {
   /// eliminated here.
   void choose_entries(bool whole, Front& front) const {
     int number = front.rows - static_cast<int>(front.own_rows.size());
-    const auto choose = [&](int row, int in_block, int most_columns) {
-      for (const int k : entries_of_rows_[at(row)]) {
-        const int column = columns_[at(k)];
-        if (eliminated_[at(column)]) continue;
-        const int j = place(front, column);
-        if (j < most_columns) front.entries.push_back({k, in_block * front.width + j});
+    for (const int row : front.own_rows) {
+      for (const int k : entries_of_rows_[at(row)])
+        if (const int column = columns_[at(k)]; !eliminated_[at(column)])
+          front.entries.push_back({k, number * front.width + place(front, column)});
+      ++number;
+    }
+    if (whole) return;
+    for (int j = 0; j < front.pivots; ++j)
+      for (const int k : border_entries_[at(front.columns[at(j)])]) {
+        const auto row = std::lower_bound(border_.begin(), border_.end(), rows_[at(k)]) - border_.begin();
+        front.entries.push_back({k, (number + static_cast<int>(row)) * front.width + j});
       }
-    };
-    for (const int row : front.own_rows) choose(row, number++, front.width);
-    if (!whole)
-      for (const int row : border_) choose(row, number++, front.pivots);
   }
 
   /// Of a column in the block; its width where it is not there.
@@ -131,6 +136,7 @@ class FrontalLu::Plan {
   std::ptrdiff_t area_ = 0;        // of the blocks so far
   std::vector<int> border_;        // rows
   std::vector<std::vector<int>> rows_of_groups_, entries_of_rows_;
+  std::vector<std::vector<int>> border_entries_;  // of columns: looked for in the rows they would take m^2 steps
 };
 
 std::optional<FrontalLu> FrontalLu::make(int size, std::span<const int> rows, std::span<const int> columns,
