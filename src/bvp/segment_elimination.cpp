@@ -88,7 +88,6 @@ SegmentElimination::SegmentElimination(const OrbitShape& shape, int scalars, int
   join_rhs_ = {joins, join_rows * lanes};
 
   const std::ptrdiff_t tops = top_block(shape.segments, 0);
-  lane_pieces_ = {tops, (n_ + border_) * length()};
   top_blocks_ = {tops, join_rows * top_join_.width()};
   top_swaps_ = {tops, n_};
   lane_rhs_ = {tops, n_ + border_};
@@ -113,6 +112,7 @@ SegmentElimination::SegmentElimination(const OrbitShape& shape, int scalars, int
   fp_of_points_.resize(index(c * n_ * (scalars_ - 1) * lanes));
   const int workers = std::max(threads.segments, threads.within);
   constexpr auto together = static_cast<std::ptrdiff_t>(most_together);
+  lane_pieces_ = {std::ptrdiff_t{lanes} * workers, (n_ + border_) * length()};
   jacobian_ = {workers, n_ * n_ * lanes};
   residual_ = {workers, c * n_ * lanes};
   local_ = {together * workers, interval_.width() * lanes};
@@ -155,7 +155,7 @@ Linearization SegmentElimination::condense(int s, const HybridSystem& system, in
       [&](int group, int thread) { outcomes_[index(group)] = condense_group(s, group, x, rows, collocation, thread); });
   if (const Linearization outcome = worst(std::span(outcomes_).first(index(groups))); outcome != Linearization::ready)
     return outcome;
-  return join_groups(s) && join_lanes(s) ? Linearization::ready : Linearization::singular;
+  return join_groups(s) && join_lanes(s, 0) ? Linearization::ready : Linearization::singular;
 }
 
 void SegmentElimination::evaluate(int s, const HybridSystem& system, int field, std::span<const int> active,
@@ -172,7 +172,7 @@ Linearization SegmentElimination::condense_evaluated(int s, const Orbit& x, std:
   if (all != Linearization::ready) return all;
   for (const Join& at : plan(s).joins)
     if (!join(s, at)) return Linearization::singular;
-  return join_lanes(s) ? Linearization::ready : Linearization::singular;
+  return join_lanes(s, thread) ? Linearization::ready : Linearization::singular;
 }
 
 double SegmentElimination::largest_residual() const {
@@ -243,22 +243,22 @@ void SegmentElimination::pass_on(const LanePiece& left, int lane, double* target
 }
 
 /// A piece of several lanes, or of one; its border rows follow the n others.
-const double* SegmentElimination::top_piece(int s, int first, int last, int& width) const {
+const double* SegmentElimination::top_piece(int s, int first, int last, int thread, int& width) const {
   if (last - first == 1) {
     width = length();
-    return lane_pieces_[top_block(s, first)];
+    return lane_pieces_[lane_piece(thread, first)];
   }
   width = top_join_.width();
   return top_blocks_[top_block(s, halfway(first, last))] + n_ * width + n_;
 }
 
 /// The joins between lanes: columns (middle | first | last | scalars), rows (left piece | right piece | border).
-bool SegmentElimination::join_lanes(int s) {
+bool SegmentElimination::join_lanes(int s, int thread) {
   const SegmentPlan& plan = this->plan(s);
   const LanePiece all = piece(s, 0, plan.groups);
   const int pieces = static_cast<int>(plan.top_lanes.size());
   for (int k = 0; k < pieces; ++k) {
-    double* to = lane_pieces_[top_block(s, k)];
+    double* to = lane_pieces_[lane_piece(thread, k)];
     for (int a = 0; a < n_; ++a, to += length())
       take_lane(all.rows + a * all.stride * lanes, plan.top_lanes[index(k)], length(), to);
     for (int r = 0; r < border_; ++r, to += length())
@@ -270,8 +270,8 @@ bool SegmentElimination::join_lanes(int s) {
     std::fill_n(target, (top_join_.rows() + border_) * width, 0.0);
     int left_width = 0;
     int right_width = 0;
-    const double* left = top_piece(s, at.first, at.middle, left_width);
-    const double* right = top_piece(s, at.middle, at.last, right_width);
+    const double* left = top_piece(s, at.first, at.middle, thread, left_width);
+    const double* right = top_piece(s, at.middle, at.last, thread, right_width);
     for (int i = 0; i < n_ + border_; ++i, left += left_width, right += right_width) {
       double* to = target + (i < n_ ? i : n_ + i) * width;
       for (int a = 0; a < n_; ++a) to[a] = left[n_ + a], to[n_ + a] = left[a];
@@ -286,7 +286,7 @@ bool SegmentElimination::join_lanes(int s) {
     negative_top_joins_[index(top_block(s, at.middle))] = sign.negative();
   }
   int last_width = 0;
-  const double* from = top_piece(s, 0, pieces, last_width);
+  const double* from = top_piece(s, 0, pieces, thread, last_width);
   for (int i = 0; i < n_ + border_; ++i, from += last_width) std::copy_n(from, length(), whole_[s] + i * length());
   return true;
 }

@@ -126,11 +126,13 @@ class SegmentElimination {
   static std::size_t index(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
   const SegmentPlan& plan_for(int intervals);
   const SegmentPlan& plan(int s) const { return *plans_[index(s)]; }
-  /// Numbers of blocks of a group, of a join within lanes, and of a lane or a join between lanes. A segment has one
-  /// join less than groups.
+  /// Numbers of blocks of a group, of a join within lanes, of a join between lanes, and of what a lane leaves. A
+  /// segment has one join less than groups.
   std::ptrdiff_t block(int s, int group) const { return first_groups_[index(s)] + group; }
   std::ptrdiff_t block(int s, const Join& at) const { return first_groups_[index(s)] - s + at.number; }
   std::ptrdiff_t top_block(int s, int middle) const { return static_cast<std::ptrdiff_t>(s) * lanes + middle; }
+
+  static std::ptrdiff_t lane_piece(int thread, int lane) { return std::ptrdiff_t{thread} * lanes + lane; }
 
   template <class Work>
   void for_pivots_of_group(int s, int group, const Work& work) const;
@@ -158,10 +160,10 @@ class SegmentElimination {
   void for_joins_in_reverse(int s, const Work& work);
   bool join(int s, const Join& at);
   void pass_on(const LanePiece& left, int lane, double* target) const;
-  bool join_lanes(int s);
+  bool join_lanes(int s, int thread);
   void condense_group_rhs(int s, int group, const double* collocation);
   void condense_join_rhs(int s, const Join& at);
-  const double* top_piece(int s, int first, int last, int& width) const;
+  const double* top_piece(int s, int first, int last, int thread, int& width) const;
   double* piece_rhs(int s, int first, int last);
   double* top_rhs(int s, int first, int last);
   static std::ptrdiff_t first_local(int thread) { return static_cast<std::ptrdiff_t>(most_together) * thread; }
@@ -199,8 +201,7 @@ class SegmentElimination {
   BlockArray<double> interval_rhs_;
   BlockArray<double> join_rhs_;
   // of segments: four each
-  BlockArray<double> lane_pieces_;  // (n + b) x length
-  BlockArray<double> top_blocks_;   // (2 n + b) x width
+  BlockArray<double> top_blocks_;  // (2 n + b) x width
   BlockArray<int> top_swaps_;
   BlockArray<double> lane_rhs_;  // n + b
   BlockArray<double> top_rhs_;   // 2 n + b
@@ -223,6 +224,7 @@ class SegmentElimination {
   LaneArray zero_rhs_;
   // of threads
   BlockArray<double> jacobian_, residual_, local_, join_local_, top_local_;
+  BlockArray<double> lane_pieces_;  // four each, (n + b) x length
 };
 
 /// work(join, thread), each after those that make its two pieces: one after the other in the order that goes on with
