@@ -91,6 +91,8 @@ class ContinuationRun {
   void report_passed_points();
   void record(const SpecialPoint& special, const PointData& data);
   void accept(const SpecialPoint& special);
+  void keep_accepted();
+  void set_accepted();
   void end(EndReason reason, std::string detail);
   void prepare_next_step();
   void report_lost(const std::string& text);
@@ -118,8 +120,10 @@ class ContinuationRun {
   ClosedBranch closed_;
   std::vector<BranchBounds> bounds_;  // all that are finite
   PathPoint here_;                    // the last accepted point, moved to a new mesh where one was due
-  PathPoint accepted_;                // the same as it was accepted
+  bool is_moved_ = false;
+  PathPoint accepted_;  // where here_ is moved: the same as it was accepted
   PointData accepted_data_;
+  double accepted_at_ = 0.0;  // its principal parameter
   Candidate next_;            // the point being computed; once accepted its step and data, the point is here_
   NewtonResult newton_;       // of the step to it
   int iterations_ = 0;        // that it would take from the tangent: what the step length goes by

@@ -1,6 +1,7 @@
 #include "continuation/path_follower.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -155,9 +156,12 @@ NewtonResult PathFollower::correct_and_orient(PathPoint& point, const OrbitVecto
 void PathFollower::put_on_tangent(const PathPoint& from, double ds, Orbit& x) const {
   x.shape = from.orbit.shape;
   x.mesh = from.orbit.mesh;
-  x.states = from.orbit.states;
+  x.states.resize(from.orbit.states.rows(), from.orbit.states.cols());
+  const std::array states{from.orbit.states.data(), from.tangent.states.data()};
+  const std::array weights{1.0, ds};
+  array_functions().combine(states.data(), weights.data(), 2, x.states.data(), x.states.size());
   x.par = from.orbit.par;
-  advance(x, ds, from.tangent, system_.free_parameters());
+  advance_parameters(x, ds, from.tangent, system_.free_parameters());
 }
 
 /// What the equations of a step take from the point that it goes from, besides its row, the dual.
@@ -286,14 +290,15 @@ int PathFollower::iterations_of(const OrbitChange& first, const OrbitChange& sec
   return iterations;
 }
 
-/// The change that leads from `x` to `to`; dx_ is overwritten.
+/// The change that leads from `x` to `to`. Of dx_ durations and globals are overwritten.
 OrbitChange PathFollower::difference(const Orbit& to, const Orbit& x) {
-  dx_.states = to.states - x.states;
+  ArrayRange change{}, states{};
+  array_functions().measure_difference(to.states.data(), x.states.data(), to.states.size(), &change, &states);
   for (int s = 0; s < x.shape.segments; ++s) dx_.durations(s) = to.duration(s) - x.duration(s);
   const std::vector<int>& free = system_.free_parameters();
   for (std::size_t g = 0; g < free.size(); ++g)
     dx_.globals(static_cast<Eigen::Index>(g)) = to.par(free[g] - 1) - x.par(free[g] - 1);
-  return change_by(dx_, to, free);
+  return change_by(dx_, to, free, change, states.largest);
 }
 
 bool PathFollower::solves(const Orbit& x) {

@@ -62,6 +62,8 @@ struct ArrayFunctions {
   void (*add)(double factor, const double* a, double* y, long count);
   /// y += a, and the ranges of a and of the new y
   void (*add_and_measure)(const double* a, double* y, long count, ArrayRange* of_a, ArrayRange* of_y);
+  /// The ranges of a - b and of a
+  void (*measure_difference)(const double* a, const double* b, long count, ArrayRange* of_difference, ArrayRange* of_a);
   /// For each of `pairs` (at least one) the sums of a_i (places[k]_i - c_i) and of a_i directions[k]_i.
   void (*project)(const double* a, const double* c, const double* const* places, const double* const* directions,
                   int pairs, double* distances, double* products, long count);

@@ -43,6 +43,8 @@ std::vector<double> results(const ArrayFunctions& f, const VectorXd& a, const Ve
   f.add_and_measure(a.data(), moved.data(), count, &ranges[0], &ranges[1]);
   all.insert(all.end(), moved.begin(), moved.end());
   for (const ArrayRange& range : ranges) all.insert(all.end(), {range.largest, range.finite ? 1.0 : 0.0});
+  f.measure_difference(a.data(), b.data(), count, &ranges[0], &ranges[1]);
+  for (const ArrayRange& range : ranges) all.insert(all.end(), {range.largest, range.finite ? 1.0 : 0.0});
   std::array<double, 2> both{};
   f.dot_both(a.data(), b.data(), c.data(), count, both.data());
   all.insert(all.end(), both.begin(), both.end());
@@ -70,7 +72,9 @@ TEST_CASE("array kernel: sums of any length") {
       const VectorXd wanted = c + a;
       CHECK(std::equal(wanted.begin(), wanted.end(), moved));
       const ArrayRange of_wanted = f.range(wanted.data(), count);
-      const std::vector<double> ranges{found[2], 1.0, of_wanted.largest, 1.0};
+      const VectorXd difference = a - b;
+      const double of_difference = f.range(difference.data(), count).largest;
+      const std::vector<double> ranges{found[2], 1.0, of_wanted.largest, 1.0, of_difference, 1.0, found[2], 1.0};
       CHECK(std::equal(ranges.begin(), ranges.end(), moved + count));
       CHECK(found[found.size() - 2] == found[0]);
       CHECK(found.back() == f.dot(a.data(), c.data(), count));
@@ -93,6 +97,13 @@ TEST_CASE("array kernel: a number that is not finite is found wherever it stands
           ArrayRange of_a{}, of_y{};
           array_functions(set).add_and_measure(a.data(), y.data(), count, &of_a, &of_y);
           CHECK_FALSE(of_a.finite);
+          CHECK_FALSE(of_y.finite);
+          const VectorXd fine = VectorXd::Zero(count);
+          array_functions(set).measure_difference(a.data(), fine.data(), count, &of_y, &of_a);
+          CHECK_FALSE(of_a.finite);
+          CHECK_FALSE(of_y.finite);
+          array_functions(set).measure_difference(fine.data(), a.data(), count, &of_y, &of_a);
+          CHECK(of_a.finite);
           CHECK_FALSE(of_y.finite);
         }
 }
@@ -268,6 +279,7 @@ TEST_CASE("array kernel: no function leaves anything in the upper halves of regi
       check("range", [&] { f.range(a, count); });
       check("add", [&] { f.add(2.0, a, y, count); });
       check("add_and_measure", [&] { f.add_and_measure(a, y, count, &ranges[0], &ranges[1]); });
+      check("measure_difference", [&] { f.measure_difference(a, a, count, &ranges[0], &ranges[1]); });
       check("combine", [&] { f.combine(arrays.data(), a, 3, y, count); });
       for (int pairs = 1; pairs <= most_pairs; ++pairs) {
         check("project", [&] { f.project(a, a, arrays.data(), arrays.data(), pairs, y, y + 20, count); });
