@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "files/run_file_names.hpp"
@@ -46,7 +47,17 @@ fs::path in_own_folder(const fs::path& path) {
   return fs::is_directory(path, error) ? path / path.filename() : path;
 }
 
-fs::path prefixed(const fs::path& path) { return path.parent_path() / ("gc." + path.filename().string()); }
+constexpr std::string_view constants_prefix = "gc.";
+
+fs::path prefixed(const fs::path& path) {
+  return path.parent_path() / fs::path(constants_prefix).concat(path.filename().string());
+}
+
+/// The name that is meant where the whole name of a file is given.
+fs::path without_prefix(const fs::path& path) {
+  const std::string file = path.filename().string();
+  return file.starts_with(constants_prefix) ? path.parent_path() / file.substr(constants_prefix.size()) : path;
+}
 
 }  // namespace
 
@@ -60,8 +71,9 @@ std::string constants_path(const std::string& c) {
   const fs::path path(c);
   if (const std::string own = own_constants_path(c); !own.empty()) return own;
   if (is_file(path)) return path.string();
-  throw UserError(fmt::format("there is no constants file {}{}; {}", prefixed(path).string(),
-                              path == prefixed(path) ? "" : " or " + path.string(), constants_meant(path)));
+  const fs::path name = without_prefix(path);
+  throw UserError(fmt::format("there is no constants file {}{}; {}", prefixed(name).string(),
+                              path == prefixed(name) ? "" : " or " + path.string(), constants_meant(name)));
 }
 
 std::string constants_of_run(const std::optional<std::string>& given, const std::string& solutions) {

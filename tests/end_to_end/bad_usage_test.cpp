@@ -57,6 +57,8 @@ TEST_CASE("files that are missing or of another kind are named") {
            BadName{"run linosc -c . -d impacting", {"gc."}},
            BadName{"run linosc -c impacting", {"linosc.dat", "-d"}},
            BadName{"run linosc -d impacting", {"gc.linosc", "-c"}},
+           BadName{"run linosc -c gc.unwritten -d impacting",
+                   {"no constants file gc.unwritten;", "simulate unwritten --dat unwritten"}},
            BadName{"run linosc -c impacting -d impacting -o nowhere/x", {"nowhere", "-o"}},
            BadName{"run linosc -c impacting -d impacting -o x/", {"-o"}},
            BadName{"labels q.nosuch", {"q.nosuch"}},
