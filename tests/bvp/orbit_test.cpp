@@ -70,3 +70,13 @@ TEST_CASE("the inner product integrates polynomials exactly, with the user's wei
   other.states.row(0).setOnes();  // <t, 1> = 1 / 2
   CHECK(dot(row, other) == Approx(2 * 2 * 0.5).epsilon(1e-13));
 }
+
+TEST_CASE("unit weights reach to the last of a thousand durations") {
+  const OrbitShape shape{1, 1000, 1, 2};
+  const Orbit x{shape, uniform_mesh(1), Eigen::MatrixXd::Zero(1, shape.columns()),
+                ParameterVector(ParameterLayout(), shape.segments)};
+  OrbitVector v(shape, 0), row(shape, 0);
+  v.durations.setLinSpaced(1.0, 1000.0);
+  WeightedNorm::unit(shape).dual(x, CollocationRule(2), {}, v, row);
+  CHECK(row.durations == v.durations);
+}
