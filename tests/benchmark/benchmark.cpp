@@ -37,7 +37,8 @@ constexpr const char* purpose =
     "  (h) start-up: what a run that computes nothing takes;\n"
     "  (i) one Newton matrix by two threads, compared with one;\n"
     "  (j) a further step of `tchat run`, files and all; with --auto, beside one of AUTO's executable;\n"
-    "  (k) a value of `tchat sweep`, beside a loop of Boost's odeint by hand.";
+    "  (k) a value of `tchat sweep`, beside a loop of Boost's odeint by hand;\n"
+    "  (l) a further step of `tchat run` for 16 to 512 segments.";
 
 constexpr const char* how_to_read =
     "How to read it. The machine's speed drops out of exponents, units and ratios; microseconds only tell where the\n"
@@ -110,6 +111,12 @@ void print_tables(const Choice& choice) {
   if (choice.has('i')) print_thread_times(thread_shapes(quick), quick ? 1 : 9);
   if (choice.has('j')) print_program_times(program_sizes(quick), quick ? 1 : 5, choice.with_auto);
   if (choice.has('k')) print_sweep_times(quick ? 3 : 21, quick ? 1 : 5);
+  if (choice.has('l')) {
+    if (quick)
+      print_segment_times({2, 4}, 5, 1);
+    else
+      print_segment_times({16, 32, 64, 128, 256, 512}, 10, 15);
+  }
 }
 
 int run(const Choice& choice) {

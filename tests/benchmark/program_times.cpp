@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -38,6 +39,11 @@ class TchatProgram {
     command.push_back(fmt::format("NMX={}", points));
     return run_child(command, folder_.path()).processor;
   }
+  /// Seconds that a step takes: a short run beside one, the last, of so many more steps.
+  double further_step(int further) const {
+    const double of_start = run(first_points);
+    return (run(first_points + further) - of_start) / further;
+  }
   double alpha() const {
     return read_point_file((folder_.path() / "p.chain").string()).sections.back().rows.back().values.front();
   }
@@ -66,14 +72,12 @@ Times measure(const ProgramSize& size, int rounds, bool with_auto) {
   std::vector<double> ratios;
   Times result;
   for (int round = 0; round < rounds; ++round) {
-    const int points = first_points + size.further;
-    const double of_start = ours.run(first_points);
-    ours_times.push_back((ours.run(points) - of_start) / size.further);
+    ours_times.push_back(ours.further_step(size.further));
     result.alpha = ours.alpha();
     if (!theirs) continue;
     request.points = first_points;
     const double of_their_start = theirs->run(request).processor_seconds;
-    request.points = points;
+    request.points = first_points + size.further;
     const AutoRun run = theirs->run(request);
     their_times.push_back((run.processor_seconds - of_their_start) / size.further);
     result.alpha_of_auto = run.last.alpha;
@@ -84,6 +88,9 @@ Times measure(const ProgramSize& size, int rounds, bool with_auto) {
   result.ratio = median(ratios);
   return result;
 }
+
+/// Runs of any number of segments take about as long.
+int further_steps(int segments) { return std::clamp(20000 / segments, 40, 500); }
 
 }  // namespace
 
@@ -103,6 +110,28 @@ void print_program_times(const std::vector<ProgramSize>& sizes, int rounds, bool
     std::fflush(stdout);
   }
   fmt::print("\n");
+}
+
+void print_segment_times(const std::vector<int>& segments, int intervals, int rounds) {
+  fmt::print(
+      "(l) Whole programs: processor time of a further step by the number of segments, least of {} alternating\n"
+      "    runs; n = 4, NTST = {}\n\n",
+      rounds, intervals);
+  std::vector<std::unique_ptr<TchatProgram>> programs;
+  for (const int k : segments)
+    programs.push_back(std::make_unique<TchatProgram>(BranchWalk(walk_shape(k, intervals)).point().orbit));
+  std::vector<std::vector<double>> times(segments.size());
+  for (int round = 0; round < rounds; ++round)
+    for (std::size_t i = 0; i < segments.size(); ++i)
+      times[i].push_back(programs[i]->further_step(further_steps(segments[i])));
+  std::vector<double> leasts;
+  fmt::print("{:>8}{:>8}{:>14}{:>20}\n", "k", "steps", "step [us]", "per segment [us]");
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    leasts.push_back(least(times[i]));
+    fmt::print("{:>8}{:>8}{:>14.1f}{:>20.2f}\n", segments[i], further_steps(segments[i]), 1e6 * leasts[i],
+               1e6 * leasts[i] / segments[i]);
+  }
+  fmt::print("  time grows like k^{:.3f}   (wanted: at most 1.05)\n\n", fitted_exponent(segments, leasts));
 }
 
 }  // namespace tchat::benchmark

@@ -4,6 +4,9 @@
 ///
 /// The time of a further step is the difference of two lengths of a run, so that the start of the programs drops out.
 /// Runs alternate; the middle one of all rounds counts.
+///
+/// Table (l): how that time grows with the number of segments. What else a machine does makes single runs longer, never
+/// shorter: the least counts.
 #pragma once
 
 #include <vector>
@@ -20,5 +23,8 @@ struct ProgramSize {
 
 /// With AUTO, or of this program alone.
 void print_program_times(const std::vector<ProgramSize>& sizes, int rounds, bool with_auto);
+
+/// `intervals`: NTST.
+void print_segment_times(const std::vector<int>& segments, int intervals, int rounds);
 
 }  // namespace tchat::benchmark
