@@ -153,8 +153,8 @@ std::string choose_side(const ResegmentRequest& request, const HybridSystem& sys
                         OrbitStart start, RunSettings& settings) {
   if (request.data) start.direction.reset();
   SelectedStart selected;
-  selected.known_parameters = ParameterVector(system.layout());
   selected.start = std::move(start);
+  selected.known_parameters = selected.start.orbit.par;
   selected.from_solution = !request.data;
   selected.problem_type = settings.problem_type;
   selected.type = target.type;
@@ -189,6 +189,7 @@ std::vector<OrbitPiece> pieces_of(const NewOrbit& target) {
 std::string obstacle(const HybridSystem& system, const RunSettings& settings, const OrbitStart& start) {
   SelectedStart selected;
   selected.start = start;
+  selected.known_parameters = start.orbit.par;
   selected.from_solution = true;
   selected.problem_type = settings.problem_type;
   try {
