@@ -269,8 +269,9 @@ class FunctionChecker {
   std::set<std::string> sorts_;  // of the faults found
 };
 
-VectorXd base_parameters(const HybridSystem& system, const VectorXd& given) {
-  const int room = system.layout().room();
+VectorXd base_parameters(const HybridSystem& system, const DerivativeCheckOptions& options) {
+  const VectorXd& given = options.parameters;
+  const int room = system.layout().room(options.segments);
   if (given.size() > room || !given.allFinite())
     throw UserError(
         fmt::format("{} parameter values were given, allowed are at most {} finite ones.", given.size(), room));
@@ -282,7 +283,7 @@ VectorXd base_parameters(const HybridSystem& system, const VectorXd& given) {
 }
 
 std::vector<TestPoint> test_points(const HybridSystem& system, const DerivativeCheckOptions& options) {
-  const VectorXd par = base_parameters(system, options.parameters);
+  const VectorXd par = base_parameters(system, options);
   std::mt19937 random(options.seed);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   std::vector<VectorXd> bases = options.states;
@@ -361,8 +362,7 @@ DerivativeCheck check_derivatives(const HybridSystem& system, const DerivativeCh
     check_all(kind, system.count(kind));
   if (system.integral_conditions() > 0) check_all(FunctionKind::integrand, options.segments);
   if (system.boundary_conditions() > 0)
-    check.boundary =
-        check_boundary(system, options.segments, base_parameters(system, options.parameters), options.seed);
+    check.boundary = check_boundary(system, options.segments, base_parameters(system, options), options.seed);
   return check;
 }
 

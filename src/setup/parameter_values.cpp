@@ -37,6 +37,8 @@ std::string parameter_lines(const HybridSystem& system, const Eigen::VectorXd& p
 
 bool apply_command_line(const HybridSystem& system, const RunSettings& settings, ParameterVector& par) {
   bool changed = false;
+  const int segments = segment_count(settings);
+  if (par.size() < par.layout().room(segments)) par.make_room(segments);  // a value may be that of a duration
   for (const RunSettings::ParameterValue& value : settings.parameter_values) {
     double& target = par(parameter_index(system, value.name, "command line") - 1);
     changed = changed || target != value.value;

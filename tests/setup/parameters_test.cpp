@@ -65,6 +65,17 @@ TEST_CASE("the command line has the last word, by index or name") {
   CHECK_THROWS_WITH(apply_command_line(ball(), settings, par), Catch::StartsWith("command line"));
 }
 
+TEST_CASE("the command line may set the duration of a segment behind the room that one segment has") {
+  RunSettings settings = ball_settings();
+  settings.segments.resize(502, settings.segments.front());
+  settings.parameter_values = {{"562", 2.5}};
+  ParameterVector par = initial_parameters(ball());
+  REQUIRE(par.size() < 562);
+  CHECK(apply_command_line(ball(), settings, par));
+  CHECK(par.duration(501) == 2.5);
+  CHECK(par(0) == 9.81);
+}
+
 TEST_CASE("lines of a .dat file hold the problem's parameters, and what else is not zero") {
   ParameterVector par = initial_parameters(ball());
   CHECK(parameter_lines(ball(), par) == "# PAR(1) = 9.81\n# PAR(2) = 0.75\n");
