@@ -55,8 +55,8 @@ constexpr const char* how_to_read =
     "that of the BLAS that is installed. (g) Read when the program ends, its libraries included. (i) Wall-clock "
     "times,\n"
     "for a machine with two processors that do nothing else. (j) AUTO looks for no special points here, tchat for all "
-    "that\nit knows; the last alphas show that both followed the same branch. Compare only numbers of an optimised "
-    "build.";
+    "that\nit knows; the last alphas show that both followed the same branch. (l) As in (a), files and all. Compare "
+    "only\nnumbers of an optimised build.";
 
 struct Choice {
   bool quick = false;

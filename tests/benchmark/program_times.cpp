@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include "benchmark/auto_program.hpp"
@@ -37,18 +38,16 @@ class TchatProgram {
                                       {"EPSU", newton_settings.tolerance_states}})
       command.push_back(fmt::format("{}={}", name, value));
     command.push_back(fmt::format("NMX={}", points));
-    return run_child(command, folder_.path()).processor;
+    const double time = run_child(command, folder_.path()).processor;
+    if (std::abs(last().point) != points) throw std::runtime_error("a run of the benchmark ended early");
+    return time;
   }
-  /// Seconds that a step takes: a short run beside one, the last, of so many more steps.
-  double further_step(int further) const {
-    const double of_start = run(first_points);
-    return (run(first_points + further) - of_start) / further;
-  }
-  double alpha() const {
-    return read_point_file((folder_.path() / "p.chain").string()).sections.back().rows.back().values.front();
-  }
+  double alpha() const { return last().values.front(); }
 
  private:
+  /// Of the run before.
+  PointRow last() const { return read_point_file((folder_.path() / "p.chain").string()).sections.back().rows.back(); }
+
   ScratchFolder folder_;
   double step_;
 };
@@ -72,7 +71,8 @@ Times measure(const ProgramSize& size, int rounds, bool with_auto) {
   std::vector<double> ratios;
   Times result;
   for (int round = 0; round < rounds; ++round) {
-    ours_times.push_back(ours.further_step(size.further));
+    const double of_start = ours.run(first_points);
+    ours_times.push_back((ours.run(first_points + size.further) - of_start) / size.further);
     result.alpha = ours.alpha();
     if (!theirs) continue;
     request.points = first_points;
@@ -89,8 +89,24 @@ Times measure(const ProgramSize& size, int rounds, bool with_auto) {
   return result;
 }
 
-/// Runs of any number of segments take about as long.
-int further_steps(int segments) { return std::clamp(20000 / segments, 40, 500); }
+/// Of one number of segments: a short run and one of `further` more steps, the least of each.
+class FurtherSteps {
+ public:
+  FurtherSteps(int segments, int intervals)
+      : further_(std::clamp(20000 / segments, 40, 500)),
+        program_(BranchWalk(walk_shape(segments, intervals)).point().orbit) {}
+  void measure() {
+    short_run_ = std::min(short_run_, program_.run(first_points));
+    long_run_ = std::min(long_run_, program_.run(first_points + further_));
+  }
+  int further() const { return further_; }
+  double step() const { return (long_run_ - short_run_) / further_; }
+
+ private:
+  int further_;
+  TchatProgram program_;
+  double short_run_ = INFINITY, long_run_ = INFINITY;
+};
 
 }  // namespace
 
@@ -114,24 +130,22 @@ void print_program_times(const std::vector<ProgramSize>& sizes, int rounds, bool
 
 void print_segment_times(const std::vector<int>& segments, int intervals, int rounds) {
   fmt::print(
-      "(l) Whole programs: processor time of a further step by the number of segments, least of {} alternating\n"
-      "    runs; n = 4, NTST = {}\n\n",
+      "(l) Whole programs: processor time of a further step by the number of segments, from the least of {} "
+      "alternating\n"
+      "    short and long runs; n = 4, NTST = {}\n\n",
       rounds, intervals);
-  std::vector<std::unique_ptr<TchatProgram>> programs;
-  for (const int k : segments)
-    programs.push_back(std::make_unique<TchatProgram>(BranchWalk(walk_shape(k, intervals)).point().orbit));
-  std::vector<std::vector<double>> times(segments.size());
+  std::vector<std::unique_ptr<FurtherSteps>> sizes;
+  for (const int k : segments) sizes.push_back(std::make_unique<FurtherSteps>(k, intervals));
   for (int round = 0; round < rounds; ++round)
-    for (std::size_t i = 0; i < segments.size(); ++i)
-      times[i].push_back(programs[i]->further_step(further_steps(segments[i])));
-  std::vector<double> leasts;
+    for (const auto& size : sizes) size->measure();
+  std::vector<double> steps;
   fmt::print("{:>8}{:>8}{:>14}{:>20}\n", "k", "steps", "step [us]", "per segment [us]");
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    leasts.push_back(least(times[i]));
-    fmt::print("{:>8}{:>8}{:>14.1f}{:>20.2f}\n", segments[i], further_steps(segments[i]), 1e6 * leasts[i],
-               1e6 * leasts[i] / segments[i]);
+    steps.push_back(sizes[i]->step());
+    fmt::print("{:>8}{:>8}{:>14.1f}{:>20.2f}\n", segments[i], sizes[i]->further(), 1e6 * steps.back(),
+               1e6 * steps.back() / segments[i]);
   }
-  fmt::print("  time grows like k^{:.3f}   (wanted: at most 1.05)\n\n", fitted_exponent(segments, leasts));
+  fmt::print("  time grows like k^{:.3f}   (wanted: at most 1.05)\n\n", fitted_exponent(segments, steps));
 }
 
 }  // namespace tchat::benchmark

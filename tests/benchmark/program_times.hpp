@@ -6,7 +6,7 @@
 /// Runs alternate; the middle one of all rounds counts.
 ///
 /// Table (l): how that time grows with the number of segments. What else a machine does makes single runs longer, never
-/// shorter: the least counts.
+/// shorter: the least short run and the least long one count.
 #pragma once
 
 #include <vector>
