@@ -94,7 +94,7 @@ ContinuationRun::ContinuationRun(PathFollower& follower, const DefiningSystem& s
 BranchSummary ContinuationRun::run(PathPoint start) {
   here_ = std::move(start);
   here_.trail.clear();  // a branch switch begins with a step on another branch
-  accepted_ = here_;    // its space
+  accepted_ = here_;    // allocates what it needs later
   next_ = {here_, 0.0, search_.begin(here_)};
   number_ = settings_.first_number;
   SpecialPoint special;
@@ -140,7 +140,7 @@ BranchSummary ContinuationRun::run(PathPoint start) {
 
 /// From a point that was recorded on another discretisation.
 void ContinuationRun::resume() {
-  set_accepted();
+  mark_accepted();
   accepted_data_ = next_.data;
   trend_.add(here_.orbit, here_.orbit.par(settings_.principal - 1));
   summary_.points = number_;
@@ -164,7 +164,7 @@ std::optional<double> ContinuationRun::move_to_first_point() {
   newton_ = newton;
   count_iterations(way->from, past);
   past.data = search_.evaluate(past.point);
-  keep_accepted();
+  save_accepted();
   here_ = way->from;
   next_ = std::move(past);
   return way->length;
@@ -375,17 +375,17 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
   return special;
 }
 
-/// Before here_ is moved.
-void ContinuationRun::keep_accepted() {
+/// Is called before here_ is moved.
+void ContinuationRun::save_accepted() {
   if (!is_moved_) accepted_ = here_;
   is_moved_ = true;
 }
 
-/// Where here_ is the point accepted last.
-void ContinuationRun::set_accepted() {
+/// here_ is the last accepted point, as it was accepted.
+void ContinuationRun::mark_accepted() {
   is_moved_ = false;
-  accepted_.trail.clear();  // others use its space
-  accepted_at_ = parameter_at(here_);
+  accepted_.trail.clear();  // its marks can be used again
+  accepted_parameter_ = parameter_at(here_);
 }
 
 /// here_ with what the search knows of it.
@@ -402,7 +402,7 @@ void ContinuationRun::accept(const SpecialPoint& special) {
       report(*change);
     lost_before_ = summary_.lost.size();
   }
-  set_accepted();
+  mark_accepted();
   accepted_data_ = next_.data;
   if (special.type != PointType::ordinary) accepted_data_.details = search_.details(here_, accepted_data_);
   trend_.add(here_.orbit, here_.orbit.par(settings_.principal - 1));
@@ -417,7 +417,7 @@ void ContinuationRun::report_passed_points() {
     const int now = next_.data.tests[i].sign;
     if (!test.is_only_reported() || before * now >= 0) continue;
     const TestedPoint at = search_.tested(here_, next_.data);
-    sink_.passed({number_, test.classify(at, now > 0).description, accepted_at_, parameter_at(here_)});
+    sink_.passed({number_, test.classify(at, now > 0).description, accepted_parameter_, parameter_at(here_)});
   }
 }
 
@@ -486,7 +486,7 @@ void ContinuationRun::prepare_next_step() {
   if (settings_.adapt_mesh_every > 0 && here_.orbit.shape.intervals > 1 && number_ % settings_.adapt_mesh_every == 0) {
     const std::vector<double>& mesh =
         equidistribution_.mesh(here_.orbit, follower_.condensed().rule(), here_.orbit.shape.intervals);
-    keep_accepted();
+    save_accepted();
     follower_.change_mesh(here_, equidistribution_.shape(), mesh);
   }
   sink_.next_step(number_, step_.value());

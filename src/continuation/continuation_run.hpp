@@ -91,8 +91,8 @@ class ContinuationRun {
   void report_passed_points();
   void record(const SpecialPoint& special, const PointData& data);
   void accept(const SpecialPoint& special);
-  void keep_accepted();
-  void set_accepted();
+  void save_accepted();
+  void mark_accepted();
   void end(EndReason reason, std::string detail);
   void prepare_next_step();
   void report_lost(const std::string& text);
@@ -120,18 +120,18 @@ class ContinuationRun {
   ClosedBranch closed_;
   std::vector<BranchBounds> bounds_;  // all that are finite
   PathPoint here_;                    // the last accepted point, moved to a new mesh where one was due
-  bool is_moved_ = false;
-  PathPoint accepted_;  // where here_ is moved: the same as it was accepted
+  bool is_moved_ = false;             // is here_ on another mesh than it was accepted on?
+  PathPoint accepted_;                // then: the last accepted point as it was accepted
   PointData accepted_data_;
-  double accepted_at_ = 0.0;  // its principal parameter
-  Candidate next_;            // the point being computed; once accepted its step and data, the point is here_
-  NewtonResult newton_;       // of the step to it
-  int iterations_ = 0;        // that it would take from the tangent: what the step length goes by
-  bool is_doubtful_ = false;  // that number, until it is told again: steps are predicted along the tangent
-  bool limited_ = false;      // by zeros that are known to lie ahead: it says nothing of the next one
-  double steepest_ = 0.0;     // largest part of the principal parameter in a tangent so far
-  double before_ = 0.0;       // that part at the last point but one
-  double turned_at_ = 0.0;    // the principal parameter at the last turn of the branch, or at its start
+  double accepted_parameter_ = 0.0;  // the principal parameter there
+  Candidate next_;                   // the point being computed; once accepted its step and data, the point is here_
+  NewtonResult newton_;              // of the step to it
+  int iterations_ = 0;               // that it would take from the tangent: what the step length goes by
+  bool is_doubtful_ = false;         // that number, until it is told again: steps are predicted along the tangent
+  bool limited_ = false;             // by zeros that are known to lie ahead: it says nothing of the next one
+  double steepest_ = 0.0;            // largest part of the principal parameter in a tangent so far
+  double before_ = 0.0;              // that part at the last point but one
+  double turned_at_ = 0.0;           // the principal parameter at the last turn of the branch, or at its start
   double first_period_ = 0.0;
   std::string passed_;  // why a longer trial of the step was no orbit
   StabilityWatch stability_;

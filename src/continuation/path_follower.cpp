@@ -290,7 +290,7 @@ int PathFollower::iterations_of(const OrbitChange& first, const OrbitChange& sec
   return iterations;
 }
 
-/// The change that leads from `x` to `to`. Of dx_ durations and globals are overwritten.
+/// The change that leads from `x` to `to`. Overwrites dx_.durations and dx_.globals.
 OrbitChange PathFollower::difference(const Orbit& to, const Orbit& x) {
   ArrayRange change{}, states{};
   array_functions().measure_difference(to.states.data(), x.states.data(), to.states.size(), &change, &states);

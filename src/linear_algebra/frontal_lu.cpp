@@ -136,7 +136,7 @@ class FrontalLu::Plan {
   std::ptrdiff_t area_ = 0;        // of the blocks so far
   std::vector<int> border_;        // rows
   std::vector<std::vector<int>> rows_of_groups_, entries_of_rows_;
-  std::vector<std::vector<int>> border_entries_;  // of columns: looked for in the rows they would take m^2 steps
+  std::vector<std::vector<int>> border_entries_;  // of columns: a search of the rows for each group would be quadratic
 };
 
 std::optional<FrontalLu> FrontalLu::make(int size, std::span<const int> rows, std::span<const int> columns,

@@ -17,6 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::string_view constants_prefix = "gc.";
+
 bool is_file(const fs::path& path) {
   std::error_code ignored;
   return fs::exists(path, ignored) && !fs::is_directory(path, ignored);
@@ -31,8 +33,8 @@ std::string constants_meant(const fs::path& path) {
   std::error_code error;
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
-    if (const std::string name = at->path().filename().string(); name.starts_with("gc."))
-      names.push_back(name.substr(3));
+    if (const std::string name = at->path().filename().string(); name.starts_with(constants_prefix))
+      names.push_back(name.substr(constants_prefix.size()));
   const std::vector<std::string> near = near_words(path.filename().string(), names);
   if (!near.empty()) return fmt::format("did you mean {}?", fmt::join(near, ", "));
   return fmt::format(
@@ -47,13 +49,11 @@ fs::path in_own_folder(const fs::path& path) {
   return fs::is_directory(path, error) ? path / path.filename() : path;
 }
 
-constexpr std::string_view constants_prefix = "gc.";
-
 fs::path prefixed(const fs::path& path) {
   return path.parent_path() / fs::path(constants_prefix).concat(path.filename().string());
 }
 
-/// The name that is meant where the whole name of a file is given.
+/// Removes a leading gc. from the name of the file.
 fs::path without_prefix(const fs::path& path) {
   const std::string file = path.filename().string();
   return file.starts_with(constants_prefix) ? path.parent_path() / file.substr(constants_prefix.size()) : path;
@@ -80,7 +80,7 @@ std::string constants_of_run(const std::optional<std::string>& given, const std:
   if (given) return constants_path(*given);
   const std::string used = sibling_path(solutions, 'r');
   if (!used.empty() && is_file(used)) return used;
-  const fs::path made = fs::path(solutions).parent_path() / ("gc." + run_name(solutions));
+  const fs::path made = prefixed(fs::path(solutions).parent_path() / run_name(solutions));
   if (is_file(made)) return made.string();
   throw UserError(fmt::format("there is no {} with the constants of the run that wrote {}; give them with -c C",
                               used.empty() ? "r-file" : used, solutions));

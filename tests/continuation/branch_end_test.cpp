@@ -60,6 +60,15 @@ class Breaking final : public TestFunction {
   SpecialPoint classify(const TestedPoint&, bool) const override { return {}; }
 };
 
+/// Is reported where alpha passes 3.05.
+class OnlyReported final : public TestFunction {
+ public:
+  std::string name() const override { return "reported"; }
+  TestValue evaluate(const TestedPoint& point) const override { return TestValue::of(point.orbit.par(0) - 3.05, 0.0); }
+  bool is_only_reported() const override { return true; }
+  SpecialPoint classify(const TestedPoint&, bool) const override { return {}; }
+};
+
 }  // namespace
 
 TEST_CASE("a summary names its family also where a branch that goes on with another mesh has no point of its own") {
@@ -214,6 +223,48 @@ TEST_CASE("MX is the last point as it was accepted: its mesh, its multipliers, i
   for (const auto& mu : end.multipliers.values)
     nearest = std::min(nearest, std::abs(mu - std::exp(2 * pi * end.orbit.par(0))));
   CHECK(nearest < 1e-6);
+}
+
+TEST_CASE("where the mesh resolves no further orbit, the last point is written again as it was accepted") {
+  const auto followed = [](double bound) {
+    Branch branch;
+    branch.settings.step.initial = -0.05;
+    branch.settings.adapt_mesh_every = 1;
+    branch.settings.error_bound = bound;
+    branch.run();
+    return branch.sink.points;
+  };
+  const std::vector<KeptPoint> all = followed(0.0);
+  std::size_t k = 3;  // the first orbit with a larger error than all before
+  double before = 0.0;
+  for (std::size_t i = 0; i < k; ++i) before = std::max(before, all[i].estimated_error);
+  while (k < all.size() && all[k].estimated_error <= before) ++k;
+  REQUIRE(k < all.size());
+
+  const std::vector<KeptPoint> points = followed(0.5 * (before + all[k].estimated_error));
+  REQUIRE(points.size() == k + 1);
+  const KeptPoint& end = points.back();
+  const KeptPoint& last = points[k - 1];
+  CHECK(end.special.type == PointType::end);
+  CHECK(end.number == last.number + 1);
+  CHECK(end.orbit.mesh == last.orbit.mesh);
+  CHECK(end.orbit.states == last.orbit.states);
+  CHECK(end.multipliers.values == last.multipliers.values);
+}
+
+TEST_CASE("what a step has passed is reported with the parameter at both of its ends") {
+  Branch branch;
+  branch.settings.adapt_mesh_every = 1;
+  branch.tests.push_back(std::make_unique<OnlyReported>());
+  branch.run();
+  REQUIRE(branch.sink.passed_points.size() == 1);
+  const LostPoint& passed = branch.sink.passed_points.front();
+  const auto parameter = [&](int number) {
+    return branch.sink.points.at(static_cast<std::size_t>(number - 1)).orbit.par(0);
+  };
+  CHECK(passed.from == parameter(passed.number - 1));
+  CHECK(passed.to == parameter(passed.number));
+  CHECK((passed.from - 3.05) * (passed.to - 3.05) < 0.0);
 }
 
 TEST_CASE("with clip a branch ends on its bounds") {

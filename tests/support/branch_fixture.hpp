@@ -63,9 +63,11 @@ class KeepingSink final : public BranchSink {
   }
   void next_step(int, double) override {}
   void note(int, const std::string& text) override { notes.push_back(text); }
+  void passed(const LostPoint& point) override { passed_points.push_back(point); }
 
   std::vector<KeptPoint> points;
   std::vector<std::string> notes;
+  std::vector<LostPoint> passed_points;
 };
 
 inline ContinuationSettings branch_settings(const OrbitShape& shape, int principal, double ds, double ds_max,
