@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "constants/settings_type.hpp"
 #include "setup/problem_setup.hpp"
 #include "text/user_error.hpp"
 
