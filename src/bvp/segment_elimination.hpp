@@ -126,13 +126,13 @@ class SegmentElimination {
   static std::size_t index(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
   const SegmentPlan& plan_for(int intervals);
   const SegmentPlan& plan(int s) const { return *plans_[index(s)]; }
-  /// Numbers of blocks of a group, of a join within lanes, and of a lane or a join between lanes. A
-  /// segment has one join less than groups.
+  /// Numbers of blocks of a group, of a join within lanes, and of a lane or a join between lanes. A segment has one
+  /// join less than groups.
   std::ptrdiff_t block(int s, int group) const { return first_groups_[index(s)] + group; }
   std::ptrdiff_t block(int s, const Join& at) const { return first_groups_[index(s)] - s + at.number; }
   std::ptrdiff_t top_block(int s, int middle) const { return static_cast<std::ptrdiff_t>(s) * lanes + middle; }
 
-  /// Of lane_pieces_, of what a lane leaves, for the thread that joins the lanes.
+  /// The number of the block in lane_pieces_ that this thread has for what a lane leaves.
   static std::ptrdiff_t lane_piece(int thread, int lane) { return std::ptrdiff_t{thread} * lanes + lane; }
 
   template <class Work>

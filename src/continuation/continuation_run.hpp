@@ -127,7 +127,7 @@ class ContinuationRun {
   Candidate next_;                   // the point being computed; once accepted its step and data, the point is here_
   NewtonResult newton_;              // of the step to it
   int iterations_ = 0;               // that it would take from the tangent: what the step length goes by
-  bool is_doubtful_ = false;         // that number, until it is told again: steps are predicted along the tangent
+  bool is_doubtful_ = false;         // iterations_ is uncertain: the next step starts from the tangent, to count it
   bool limited_ = false;             // by zeros that are known to lie ahead: it says nothing of the next one
   double steepest_ = 0.0;            // largest part of the principal parameter in a tangent so far
   double before_ = 0.0;              // that part at the last point but one
