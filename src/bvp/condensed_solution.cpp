@@ -107,7 +107,7 @@ SegmentSolution CondensedSystem::beyond_ends(int s, RightHandSide right, const d
 }
 
 void CondensedSystem::extend(const double* small, OrbitVector& dx) {
-  segment_work_.each(shape_.segments, [&](int s, int thread) {
+  segment_work_.each_in_reverse(shape_.segments, [&](int s, int thread) {
     elimination_.expand(s, beyond_ends(s, RightHandSide::zero, small, dx), thread);
   });
 }
@@ -118,14 +118,14 @@ void CondensedSystem::condense_right_hand_side(const std::vector<double>& colloc
 }
 
 void CondensedSystem::extend_condensed(const double* small, OrbitVector& dx) {
-  segment_work_.each(shape_.segments, [&](int s, int thread) {
+  segment_work_.each_in_reverse(shape_.segments, [&](int s, int thread) {
     elimination_.expand(s, beyond_ends(s, RightHandSide::condensed, small, dx), thread);
   });
 }
 
 void CondensedSystem::extend_both(const double* small, OrbitVector& dx, const double* other_small,
                                   OrbitVector& other_dx) {
-  segment_work_.each(shape_.segments, [&](int s, int thread) {
+  segment_work_.each_in_reverse(shape_.segments, [&](int s, int thread) {
     elimination_.expand_together(s,
                                  std::array{beyond_ends(s, RightHandSide::zero, small, dx),
                                             beyond_ends(s, RightHandSide::zero, other_small, other_dx)},

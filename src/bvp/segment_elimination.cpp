@@ -150,6 +150,8 @@ Linearization worst(std::span<const Linearization> outcomes) {
 Linearization SegmentElimination::condense(int s, const HybridSystem& system, int field, std::span<const int> active,
                                            const Orbit& x, std::span<const OrbitVector> rows, double* collocation) {
   const int groups = plan(s).groups;
+  fetch_segment(s + 1, x.states);
+  fetch_top_joins(s + 1);
   within_.run(
       groups, [&](int group) { evaluate_group(s, group, system, field, active, x); },
       [&](int group, int thread) { outcomes_[index(group)] = condense_group(s, group, x, rows, collocation, thread); });

@@ -25,6 +25,7 @@
 /// where they are eliminated, joined and solved: processors may share no cache.
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <span>
 #include <vector>
@@ -168,6 +169,8 @@ class SegmentElimination {
   double* piece_rhs(int s, int first, int last);
   double* top_rhs(int s, int first, int last);
   static std::ptrdiff_t first_local(int thread) { return static_cast<std::ptrdiff_t>(most_together) * thread; }
+  void fetch_segment(int s, const Eigen::MatrixXd& states) const;
+  void fetch_top_joins(int s) const;
   void put_ends(int s, const SegmentSolution& of);
   void expand_top_join(int s, const Join& at, const SegmentSolution& of, int thread);
   void put_scalars(const SegmentSolution& of, double* to) const;

@@ -5,6 +5,7 @@
 
 #include "bvp/lane_entries.hpp"
 #include "bvp/segment_elimination.hpp"
+#include "linear_algebra/fetch_ahead.hpp"
 
 namespace tchat {
 
@@ -49,7 +50,7 @@ void SegmentElimination::condense_group_rhs(int s, int group, const double* coll
     for (int i = 0; i < rows; ++i) r[i * lanes + l] = -from[i];
   }
   std::fill_n(r + rows * lanes, border_ * lanes, 0.0);
-  interval_.forward(interval_blocks_[b], border_, interval_swaps_[b], r);
+  interval_.forward(interval_blocks_[b], border_, interval_swaps_[b], r, interval_blocks_.behind(b));
 }
 
 void SegmentElimination::condense_join_rhs(int s, const Join& at) {
@@ -66,11 +67,12 @@ void SegmentElimination::condense_join_rhs(int s, const Join& at) {
     for (int a = 0; a < n_; ++a) r[a * lanes + l] = 0.0, r[count + a * lanes + l] = left[a * lanes + l];
     for (int k = 0; k < border_; ++k) r[2 * count + k * lanes + l] = left[count + k * lanes + l];
   }
-  join_.forward(join_blocks_[b], border_, join_swaps_[b], r);
+  join_.forward(join_blocks_[b], border_, join_swaps_[b], r, join_blocks_.behind(b));
 }
 
 void SegmentElimination::condense_right_hand_side(int s, const double* collocation, double* condensed) {
   const SegmentPlan& plan = this->plan(s);
+  fetch_top_joins(s + 1);
   within_.each(plan.groups, [&](int group, int) { condense_group_rhs(s, group, collocation); });
   for_joins(s, [&](const Join& at, int) { condense_join_rhs(s, at); });
   const double* all = piece_rhs(s, 0, plan.groups);
@@ -95,6 +97,8 @@ void SegmentElimination::expand_together(int s, std::span<const SegmentSolution>
   assert(solutions.size() == 1 || std::none_of(solutions.begin(), solutions.end(), [](const SegmentSolution& of) {
            return of.right == RightHandSide::condensed;
          }));
+  fetch_top_joins(s - 1);  // one thread solves the segments from the last one to the first
+  for (const SegmentSolution& of : solutions) fetch_segment(s - 1, of.dx->states);
   for (const SegmentSolution& of : solutions) {
     put_ends(s, of);
     for (auto at = plan(s).top_joins.rbegin(); at != plan(s).top_joins.rend(); ++at)
@@ -104,6 +108,19 @@ void SegmentElimination::expand_together(int s, std::span<const SegmentSolution>
       s, [&](const Join& at, int within) { expand_lane_join(s, at, solutions, std::max(thread, within)); });
   within_.each_in_reverse(  // as blocks are fetched
       plan(s).groups, [&](int group, int within) { expand_group(s, group, solutions, std::max(thread, within)); });
+}
+
+/// Prefetches the states at the nodes of segment s. Does nothing if there is no such segment.
+void SegmentElimination::fetch_segment(int s, const Eigen::MatrixXd& states) const {
+  if (s < 0 || s >= shape_.segments) return;
+  fetch_ahead(states.col(shape_.first_node(s)).data(), std::ptrdiff_t{shape_.nodes_of(s)} * n_);
+}
+
+/// The same of its joins between lanes.
+void SegmentElimination::fetch_top_joins(int s) const {
+  if (s < 0 || s >= shape_.segments) return;
+  for (const Join& at : plan(s).top_joins)
+    fetch_ahead(top_blocks_[top_block(s, at.middle)], std::ptrdiff_t{top_join_.rows() + border_} * top_join_.width());
 }
 
 void SegmentElimination::put_ends(int s, const SegmentSolution& of) {

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 #include <utility>
 
+#include "linear_algebra/fetch_ahead.hpp"
 #include "linear_algebra/partial_lu.hpp"
 #include "linear_algebra/permutation.hpp"
 
@@ -177,7 +179,9 @@ bool FrontalLu::factorize(std::span<const double> values) {
     if (!(scale > 0.0) || !std::isfinite(scale)) return false;
     scale = 1.0 / scale;
   }
-  for (const Front& front : fronts_) {
+  for (std::size_t k = 0; k < fronts_.size(); ++k) {
+    const Front& front = fronts_[k];
+    fetch_front(k + 1);
     double* block = blocks_.data() + front.block;
     std::fill_n(block, std::ptrdiff_t{front.rows + front.border} * front.width, 0.0);
     for (const Entry& entry : front.entries)
@@ -186,6 +190,15 @@ bool FrontalLu::factorize(std::span<const double> values) {
     if (!eliminate_pivots(front, block)) return false;
   }
   return true;
+}
+
+/// Prefetches block, columns and entries of a front. Does nothing if there is no front of this number.
+void FrontalLu::fetch_front(std::size_t number) const {
+  if (number >= fronts_.size()) return;
+  const Front& front = fronts_[number];
+  fetch_ahead(blocks_.data() + front.block, std::ptrdiff_t{front.rows + front.border} * front.width);
+  fetch_ahead(front.columns.data(), std::ssize(front.columns));
+  fetch_ahead(front.entries.data(), std::ssize(front.entries));
 }
 
 bool FrontalLu::eliminate_pivots(const Front& front, double* block) {
@@ -234,17 +247,21 @@ void FrontalLu::gather_right(const Front& front, const double* b, double* right)
 }
 
 void FrontalLu::solve(const double* b, double* x) {
-  for (const Front& front : fronts_) {
+  for (std::size_t k = 0; k < fronts_.size(); ++k) {
+    const Front& front = fronts_[k];
+    fetch_front(k + 1);
     double* right = rights_.data() + front.right;
     gather_right(front, b, right);
     forward(DynamicSizes{front.rows, front.pivots, front.width}, blocks_.data() + front.block, front.border,
             swaps_.data() + front.swaps, right);
   }
-  for (auto front = fronts_.rbegin(); front != fronts_.rend(); ++front) {
-    for (int j = front->pivots; j < front->width; ++j) local_[at(j)] = x[front->columns[at(j)]];
-    backward(DynamicSizes{front->rows, front->pivots, front->width}, blocks_.data() + front->block,
-             rights_.data() + front->right, local_.data());
-    for (int k = 0; k < front->pivots; ++k) x[front->columns[at(k)]] = local_[at(k)];
+  for (std::size_t k = fronts_.size(); k-- > 0;) {
+    const Front& front = fronts_[k];
+    fetch_front(k - 1);  // at 0 there is no such front
+    for (int j = front.pivots; j < front.width; ++j) local_[at(j)] = x[front.columns[at(j)]];
+    backward(DynamicSizes{front.rows, front.pivots, front.width}, blocks_.data() + front.block,
+             rights_.data() + front.right, local_.data());
+    for (int j = 0; j < front.pivots; ++j) x[front.columns[at(j)]] = local_[at(j)];
   }
 }
 

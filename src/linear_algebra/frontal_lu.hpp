@@ -64,6 +64,7 @@ class FrontalLu {
   int parity() const;
   int find_parity_without_exchanges() const;
   class Plan;
+  void fetch_front(std::size_t number) const;
   void put_children(const Front& front, double* block) const;
   bool eliminate_pivots(const Front& front, double* block);
   void gather_right(const Front& front, const double* b, double* right) const;

@@ -16,7 +16,7 @@ struct LaneSizes {
 
 struct LaneFunctions {
   unsigned (*eliminate)(const LaneSizes&, double*, int, int*, const double*);
-  void (*forward)(const LaneSizes&, const double*, int, const int*, double*);
+  void (*forward)(const LaneSizes&, const double*, int, const int*, double*, const double*);
   void (*forward_transposed)(const LaneSizes&, const double*, const int*, double*);
   void (*backward)(const LaneSizes&, const double*, const double*, double*, const double*);
   void (*backward_of_two)(const LaneSizes&, const double*, double* const*, const double*);
@@ -76,8 +76,8 @@ unsigned LaneKernel::eliminate(double* a, int border, int* swaps, const double* 
   return functions_->eliminate({rows_, pivots_, width_, stride_}, a, border, swaps, next);
 }
 
-void LaneKernel::forward(const double* a, int border, const int* swaps, double* rhs) const {
-  functions_->forward({rows_, pivots_, width_, stride_}, a, border, swaps, rhs);
+void LaneKernel::forward(const double* a, int border, const int* swaps, double* rhs, const double* next) const {
+  functions_->forward({rows_, pivots_, width_, stride_}, a, border, swaps, rhs, next);
 }
 
 void LaneKernel::forward_transposed(const double* a, const int* swaps, double* weights) const {

@@ -52,7 +52,7 @@ class LaneKernel {
   /// Bit l of the result is set when the block in lane l has a pivot that is zero or not finite; that block is then
   /// useless, the others are not touched by it. swaps[k lanes + l] is the row exchanged with row k in lane l.
   unsigned eliminate(double* a, int border, int* swaps, const double* next = nullptr) const;
-  void forward(const double* a, int border, const int* swaps, double* rhs) const;
+  void forward(const double* a, int border, const int* swaps, double* rhs, const double* next = nullptr) const;
   void forward_transposed(const double* a, const int* swaps, double* weights) const;
   void backward(const double* a, const double* rhs, double* x, const double* next = nullptr) const;
   /// Two or more solutions for right-hand sides that are zero, as if each was found by backward().

@@ -299,6 +299,12 @@ TEST_CASE("a block that comes next is left as it is and changes nothing") {
       for (int l = 0; l < lanes; ++l)
         CHECK(block_of(again, l, blocks[place(l)]) == block_of(e.blocks, l, blocks[place(l)]));
 
+      LaneArray forward_alone(place((k.rows + k.border) * lanes), 0.5);
+      LaneArray forward_before_next = forward_alone;
+      kernel.forward(e.blocks.data(), k.border, e.swaps.data(), forward_alone.data());
+      kernel.forward(e.blocks.data(), k.border, e.swaps.data(), forward_before_next.data(), next.data());
+      CHECK(forward_alone == forward_before_next);
+
       const LaneArray right(place(k.rows * lanes), 0.5);
       std::vector<LaneArray> alone(3, LaneArray(place(k.width * lanes), 1.5));
       std::vector<LaneArray> before_next = alone;
