@@ -13,7 +13,7 @@ struct StepSizes {
   int intervals_for_segments = 50;  ///< NTST while the segments vary
   std::vector<int> many_segments;
   int intervals_for_many = 10;  ///< NTST while many segments vary
-  int rounds = 10;              ///< each twice ten steps
+  int rounds = 20;              ///< each twice ten steps
 };
 
 void print_step_times(const StepSizes& sizes);
