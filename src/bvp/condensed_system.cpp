@@ -194,9 +194,11 @@ void CondensedSystem::evaluate(const Orbit& x, OrbitResidual& residual) {
   const double* par = x.par.data();
   double* collocation = residual.collocation.data();
   double* coupling = residual.coupling.data();
+  residual.of_collocation = {0.0, true};
   for (int s = 0; s < shape_.segments; ++s) {
     const IndexVector& v = system_.signature()[index(s)];
     const double* const mesh = x.mesh_of(s);
+    const double* const first = collocation;
     for (int j = 0; j < x.shape.intervals_of(s); ++j) {
       const double scale = (mesh[j + 1] - mesh[j]) * x.duration(s);
       for (int g = 0; g < shape_.collocation; ++g, collocation += n_) {
@@ -205,10 +207,10 @@ void CondensedSystem::evaluate(const Orbit& x, OrbitResidual& residual) {
         for (int a = 0; a < n_; ++a) collocation[a] = slope_[index(a)] - scale * collocation[a];
       }
     }
+    widen(residual.of_collocation, array_functions().range(first, collocation - first));  // while it is in the cache
     system_.coupling_values(s, x, coupling);
     coupling += system_.coupling_rows(s);
   }
-  residual.of_collocation = range_of(residual.collocation);
 }
 
 // ---- linearisation --------------------------------------------------------------------------------------------------

@@ -41,10 +41,11 @@ double largest_residual(const HybridSystem& system, int field, const Orbit& x, c
 
 double estimated_error(const HybridSystem& system, const Signature& signature, const Orbit& x,
                        const CollocationRule& rule) {
-  const ArrayRange of_states = array_functions().range(x.states.data(), x.states.size());
-  if (!of_states.finite) return std::numeric_limits<double>::infinity();
+  ArrayRange of_states{0.0, true};
   double residual = 0.0;
   for (int s = 0; s < x.shape.segments; ++s) {
+    widen(of_states, array_functions().range(x.node(s, 0), long{x.shape.nodes_of(s)} * x.shape.dimension));
+    if (!of_states.finite) return std::numeric_limits<double>::infinity();
     const int field = signature[static_cast<std::size_t>(s)].field;
     if (x.duration(s) != 0.0) residual = std::max(residual, largest_residual(system, field, x, rule, s));
   }

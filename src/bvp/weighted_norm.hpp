@@ -25,9 +25,9 @@ class WeightedNorm {
   /// All weights 1, for orbits of this shape and a problem of at most 60 parameters.
   static WeightedNorm unit(const OrbitShape& shape);
 
-  /// The dual vector <v, .> on the mesh of x, written to `row`.
-  void dual(const Orbit& x, const CollocationRule& rule, const std::vector<int>& free_parameters, const OrbitVector& v,
-            OrbitVector& row) const;
+  /// The dual vector <v, .> on the mesh of x, written to `row`. Returns its value on v, <v, v>.
+  double dual(const Orbit& x, const CollocationRule& rule, const std::vector<int>& free_parameters,
+              const OrbitVector& v, OrbitVector& row) const;
 
  private:
   Eigen::VectorXd state_weights_;

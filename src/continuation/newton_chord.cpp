@@ -48,11 +48,6 @@ std::string describe(NewtonStatus status) {
 
 bool is_rounding(double residual, const Orbit& x) { return residual < rounding_residual * (1.0 + largest_state(x)); }
 
-OrbitChange change_by(const OrbitVector& dx, const Orbit& x, const std::vector<int>& free_parameters) {
-  return change_by(dx, x, free_parameters, array_functions().range(dx.states.data(), dx.states.size()),
-                   largest_state(x));
-}
-
 double largest_state(const Orbit& x) { return array_functions().range(x.states.data(), x.states.size()).largest; }
 
 OrbitChange change_by(const OrbitVector& dx, const Orbit& x, const std::vector<int>& free_parameters,
@@ -141,7 +136,7 @@ NewtonResult NewtonChord::correct(Orbit& x, const OrbitVector& row, double chang
 OrbitChange NewtonChord::apply(Orbit& x) const {
   const std::vector<int>& free_parameters = problem_.system().free_parameters();
   ArrayRange change{}, states{};
-  array_functions().add_and_measure(dx_.states.data(), x.states.data(), x.states.size(), &change, &states);
+  array_functions().add_and_measure(1.0, dx_.states.data(), x.states.data(), x.states.size(), &change, &states);
   advance_parameters(x, 1.0, dx_, free_parameters);
   return change_by(dx_, x, free_parameters, change, states.largest);
 }

@@ -27,14 +27,13 @@ struct NewtonSettings {
   int threads = 1;  ///< that may share the linear algebra of a Newton matrix; results do not depend on it
 };
 
-/// Largest relative change that dx makes of x, as Newton's method measures corrections.
+/// Largest relative change of an orbit, as Newton's method measures corrections.
 struct OrbitChange {
   double parameters = 0.0;  ///< |dp| / (1 + |p|) of durations and free parameters
   double states = 0.0;      ///< max |du| / (1 + max |u|); NaN when they are not finite
   double larger() const { return parameters > states ? parameters : states; }
 };
-OrbitChange change_by(const OrbitVector& dx, const Orbit& x, const std::vector<int>& free_parameters);
-/// The same where the range of dx.states and max |u| are known.
+/// The change of x by dx. `range` is that of dx.states, `largest` is max |u| of x.
 OrbitChange change_by(const OrbitVector& dx, const Orbit& x, const std::vector<int>& free_parameters,
                       const ArrayRange& range, double largest);
 double largest_state(const Orbit& x);

@@ -92,8 +92,7 @@ double PathFollower::distance(const Orbit& a, const Orbit& b) const {
   const std::vector<int>& free = system_.free_parameters();
   for (std::size_t g = 0; g < free.size(); ++g)
     difference.globals(static_cast<Eigen::Index>(g)) = a.par(free[g] - 1) - b.par(free[g] - 1);
-  norm_.dual(a, condensed().rule(), free, difference, dual);
-  return std::sqrt(std::abs(dot(dual, difference)));
+  return std::sqrt(std::abs(norm_.dual(a, condensed().rule(), free, difference, dual)));
 }
 
 bool PathFollower::linearize_at(const PathPoint& point) {
@@ -110,8 +109,7 @@ bool PathFollower::linearize(const Orbit& x, const OrbitVector& row) {
 
 /// The dual of v, and v's length.
 double PathFollower::measure(const Orbit& x, const OrbitVector& v, OrbitVector& dual) const {
-  norm_.dual(x, condensed().rule(), system_.free_parameters(), v, dual);
-  return std::sqrt(std::abs(dot(dual, v)));
+  return std::sqrt(std::abs(norm_.dual(x, condensed().rule(), system_.free_parameters(), v, dual)));
 }
 
 void PathFollower::normalise(const Orbit& x, OrbitVector& tangent, OrbitVector& dual) const {
@@ -220,10 +218,12 @@ OrbitChange PathFollower::chord(const PathPoint& from, const Orbit& x) {
   const OrbitVector& along = problem_.tangent();
   const auto [of_dx, of_tangent] = dot_both(from.dual, dx_, along);
   const double share = -of_dx / of_tangent;
-  dx_.states += share * along.states;
+  ArrayRange of_along{}, change{};
+  array_functions().add_and_measure(share, along.states.data(), dx_.states.data(), dx_.states.size(), &of_along,
+                                    &change);
   dx_.durations += share * along.durations;
   dx_.globals += share * along.globals;
-  return change_by(dx_, x, free_parameters);
+  return change_by(dx_, x, free_parameters, change, largest_state(x));
 }
 
 /// Brings a prediction nearer to the branch while that takes few chord iterations. How far it is moved.
@@ -248,17 +248,16 @@ IterationRange PathFollower::iterations_along_tangent(const PathPoint& from, dou
   constexpr double fast = 1e-2;         // a contraction of Newton's method that is far from none
   constexpr double of_measured = 1.5;   // error of the second correction, as a factor
   constexpr double of_estimated = 5.0;  // the same, and of what is made of the constant
-  put_on_tangent(from, ds, on_tangent_);
-  OrbitChange first = difference(to.orbit, on_tangent_);
+  OrbitChange first = difference(to.orbit, from.orbit, ds, from.tangent);
   const double estimated = from.newton_constant * first.larger();
   const bool measured =
       problem_.allows_chord() && factors_known_ && (exactly || !(estimated > 0.0 && estimated < fast));
   OrbitChange second{0.0, estimated * first.larger()};
   if (measured) {
     begin_step(from);
+    put_on_tangent(from, ds, on_tangent_);
     first = chord(from, on_tangent_);
-    advance(on_tangent_, 1.0, dx_, system_.free_parameters());
-    second = difference(to.orbit, on_tangent_);
+    second = difference(to.orbit, on_tangent_, 1.0, dx_);
     to.newton_constant = second.larger() / (first.larger() * first.larger());
   }
   const double constant = second.larger() / (first.larger() * first.larger());
@@ -290,14 +289,18 @@ int PathFollower::iterations_of(const OrbitChange& first, const OrbitChange& sec
   return iterations;
 }
 
-/// The change that leads from `x` to `to`. Overwrites dx_.durations and dx_.globals.
-OrbitChange PathFollower::difference(const Orbit& to, const Orbit& x) {
+/// The change that leads from x + step v to `to`. Overwrites dx_.durations and dx_.globals, which may be those of v.
+OrbitChange PathFollower::difference(const Orbit& to, const Orbit& x, double step, const OrbitVector& v) {
   ArrayRange change{}, states{};
-  array_functions().measure_difference(to.states.data(), x.states.data(), to.states.size(), &change, &states);
-  for (int s = 0; s < x.shape.segments; ++s) dx_.durations(s) = to.duration(s) - x.duration(s);
+  array_functions().measure_difference(to.states.data(), x.states.data(), step, v.states.data(), to.states.size(),
+                                       &change, &states);
+  for (int s = 0; s < x.shape.segments; ++s)
+    dx_.durations(s) = to.duration(s) - (x.duration(s) + step * v.durations(s));
   const std::vector<int>& free = system_.free_parameters();
-  for (std::size_t g = 0; g < free.size(); ++g)
-    dx_.globals(static_cast<Eigen::Index>(g)) = to.par(free[g] - 1) - x.par(free[g] - 1);
+  for (std::size_t g = 0; g < free.size(); ++g) {
+    const auto i = static_cast<Eigen::Index>(g);
+    dx_.globals(i) = to.par(free[g] - 1) - (x.par(free[g] - 1) + step * v.globals(i));
+  }
   return change_by(dx_, to, free, change, states.largest);
 }
 

@@ -115,7 +115,7 @@ class PathFollower {
   void put_on_tangent(const PathPoint& from, double ds, Orbit& x) const;
   void begin_step(const PathPoint& from);
   double polish(const PathPoint& from, double expected, Orbit& x);
-  OrbitChange difference(const Orbit& to, const Orbit& x);
+  OrbitChange difference(const Orbit& to, const Orbit& x, double step, const OrbitVector& v);
   int iterations_of(const OrbitChange& first, const OrbitChange& second, double constant) const;
   OrbitChange chord(const PathPoint& from, const Orbit& x);
   bool linearize(const Orbit& x, const OrbitVector& row);

@@ -232,7 +232,7 @@ void SpecialPointSearch::remember(const PointData& data, double ds) {
 }
 
 bool SpecialPointSearch::resolved(const PathPoint& here, const Candidate& next) const {
-  const bool turns = !(dot(here.dual, next.point.tangent) > hardly_turned);
+  const auto turns = [&] { return !(dot(here.dual, next.point.tangent) > hardly_turned); };
   const double at = history_.back().arclength + std::abs(next.ds);
   for (std::size_t i = 0; i < tests_.size(); ++i) {
     if (!next.data.tests[i].value) continue;
@@ -243,7 +243,7 @@ bool SpecialPointSearch::resolved(const PathPoint& here, const Candidate& next) 
     const std::span<const TrendValue> past(values.data(), count);
     const TrendValue last{at, beyond_level(next.data.tests[i])};
     const Resolution resolution = tests_[i]->resolution();
-    if (resolution == Resolution::direction && turns && is_near_zero(i, next.data.tests[i])) return false;
+    if (resolution == Resolution::direction && is_near_zero(i, next.data.tests[i]) && turns()) return false;
     const bool is_resolved = resolution == Resolution::trend ? follows_trend(past, last) : !has_two_zeros(past, last);
     if (!is_resolved) return false;
   }

@@ -6,6 +6,10 @@
 /// that each has).
 #pragma once
 
+#include <array>
+#include <cassert>
+#include <cstddef>
+
 #include "linear_algebra/lane_kernel.hpp"
 
 namespace tchat {
@@ -15,6 +19,12 @@ struct ArrayRange {
   double largest;
   bool finite;
 };
+
+/// `range` becomes that of both arrays.
+inline void widen(ArrayRange& range, const ArrayRange& other) {
+  if (other.largest > range.largest) range.largest = other.largest;
+  range.finite = range.finite && other.finite;
+}
 
 /// Polynomials of n entries through c + 1 nodes on each of some intervals one behind the other, whose last node is the
 /// first of the next one.
@@ -53,6 +63,8 @@ inline constexpr int most_pairs = 3;
 struct ArrayFunctions {
   /// sum a_i b_i
   double (*dot)(const double* a, const double* b, long count);
+  /// sums[i % GrowingDot::stride] += a_i b_i; `count` is a multiple of that stride
+  void (*add_products)(const double* a, const double* b, long count, double* sums);
   /// sum a_i b_i and sum a_i c_i, as dot() finds each
   void (*dot_both)(const double* a, const double* b, const double* c, long count, double* results);
   /// sum a_i (b_i - c_i)
@@ -60,10 +72,11 @@ struct ArrayFunctions {
   ArrayRange (*range)(const double* a, long count);
   /// y += factor a
   void (*add)(double factor, const double* a, double* y, long count);
-  /// y += a, and the ranges of a and of the new y
-  void (*add_and_measure)(const double* a, double* y, long count, ArrayRange* of_a, ArrayRange* of_y);
-  /// The ranges of a - b and of a
-  void (*measure_difference)(const double* a, const double* b, long count, ArrayRange* of_difference, ArrayRange* of_a);
+  /// y += factor a, and the ranges of a and of the new y
+  void (*add_and_measure)(double factor, const double* a, double* y, long count, ArrayRange* of_a, ArrayRange* of_y);
+  /// The ranges of a - (b + factor c) and of a
+  void (*measure_difference)(const double* a, const double* b, double factor, const double* c, long count,
+                             ArrayRange* of_difference, ArrayRange* of_a);
   /// For each of `pairs` (at least one) the sums of a_i (places[k]_i - c_i) and of a_i directions[k]_i.
   void (*project)(const double* a, const double* c, const double* const* places, const double* const* directions,
                   int pairs, double* distances, double* products, long count);
@@ -88,5 +101,36 @@ struct ArrayFunctions {
 /// Those for what this processor has.
 const ArrayFunctions& array_functions();
 const ArrayFunctions& array_functions(VectorSet set);
+
+/// dot(), to the last bit, of arrays that become known from the first entry on: their entries are read while they are
+/// in the cache.
+class GrowingDot {
+ public:
+  static constexpr int stride = 4 * lanes;
+
+  GrowingDot(const double* a, const double* b) : a_(a), b_(b) {}
+  /// The first `count` entries of both are known.
+  void grow_to(long count) {
+    assert(count >= done_);
+    const long more = (count - done_) / stride * stride;
+    array_functions().add_products(a_ + done_, b_ + done_, more, sums_.data());
+    done_ += more;
+  }
+  /// The sum over the first `count` entries, after grow_to(count).
+  double value(long count) const {
+    assert(count >= done_ && count - done_ < stride);
+    double rest = 0.0;
+    for (long i = done_; i < count; ++i) rest += a_[i] * b_[i];
+    std::array<double, lanes> total{};
+    for (std::size_t l = 0; l < total.size(); ++l)
+      total[l] = (sums_[l] + sums_[2 * lanes + l]) + (sums_[lanes + l] + sums_[3 * lanes + l]);
+    return ((total[0] + total[2]) + (total[1] + total[3])) + rest;
+  }
+
+ private:
+  const double *a_, *b_;
+  long done_ = 0;
+  std::array<double, stride> sums_{};
+};
 
 }  // namespace tchat

@@ -63,7 +63,8 @@ TEST_CASE("the inner product integrates polynomials exactly, with the user's wei
   v.states = x.states;
   v.durations << 0.5, 7.0;
   v.globals << 0.2;
-  norm.dual(x, CollocationRule(3), {1}, v, row);
+  const double square = norm.dual(x, CollocationRule(3), {1}, v, row);
+  CHECK(square == dot(row, v));  // to the last bit
   // Two segments of 2 / 3 + 3 / 5 each.
   CHECK(dot(row, v) == Approx(2 * (2.0 / 3 + 3.0 / 5) + 0.25 + 5 * 0.04).epsilon(1e-13));
   OrbitVector other(x.shape, 1);
@@ -77,6 +78,6 @@ TEST_CASE("unit weights reach to the last of a thousand durations") {
                 ParameterVector(ParameterLayout(), shape.segments)};
   OrbitVector v(shape, 0), row(shape, 0);
   v.durations.setLinSpaced(1.0, 1000.0);
-  WeightedNorm::unit(shape).dual(x, CollocationRule(2), {}, v, row);
+  CHECK(WeightedNorm::unit(shape).dual(x, CollocationRule(2), {}, v, row) == v.durations.squaredNorm());
   CHECK(row.durations == v.durations);
 }

@@ -40,11 +40,14 @@ std::vector<double> results(const ArrayFunctions& f, const VectorXd& a, const Ve
 
   VectorXd moved = c;
   std::array<ArrayRange, 2> ranges{};
-  f.add_and_measure(a.data(), moved.data(), count, &ranges[0], &ranges[1]);
+  f.add_and_measure(0.3, a.data(), moved.data(), count, &ranges[0], &ranges[1]);
   all.insert(all.end(), moved.begin(), moved.end());
   for (const ArrayRange& range : ranges) all.insert(all.end(), {range.largest, range.finite ? 1.0 : 0.0});
-  f.measure_difference(a.data(), b.data(), count, &ranges[0], &ranges[1]);
+  f.measure_difference(a.data(), b.data(), 0.3, c.data(), count, &ranges[0], &ranges[1]);
   for (const ArrayRange& range : ranges) all.insert(all.end(), {range.largest, range.finite ? 1.0 : 0.0});
+  std::array<double, GrowingDot::stride> products{};
+  f.add_products(a.data(), c.data(), count / GrowingDot::stride * GrowingDot::stride, products.data());
+  all.insert(all.end(), products.begin(), products.end());
   std::array<double, 2> both{};
   f.dot_both(a.data(), b.data(), c.data(), count, both.data());
   all.insert(all.end(), both.begin(), both.end());
@@ -69,16 +72,31 @@ TEST_CASE("array kernel: sums of any length") {
               rounding);
       }
       const double* const moved = &found[static_cast<std::size_t>(3 + 2 * count)];
-      const VectorXd wanted = c + a;
+      const VectorXd wanted = c + 0.3 * a;
       CHECK(std::equal(wanted.begin(), wanted.end(), moved));
       const ArrayRange of_wanted = f.range(wanted.data(), count);
-      const VectorXd difference = a - b;
+      const VectorXd difference = a - (b + 0.3 * c);
       const double of_difference = f.range(difference.data(), count).largest;
       const std::vector<double> ranges{found[2], 1.0, of_wanted.largest, 1.0, of_difference, 1.0, found[2], 1.0};
       CHECK(std::equal(ranges.begin(), ranges.end(), moved + count));
       CHECK(found[found.size() - 2] == found[0]);
       CHECK(found.back() == f.dot(a.data(), c.data(), count));
       CHECK(found == results(array_functions(VectorSet::baseline), a, b, c));
+    }
+  }
+}
+
+TEST_CASE("array kernel: a sum that grows is that of whole arrays to the last bit") {
+  for (const long count : {0L, 5L, 16L, 33L, 100L, 803L}) {
+    const VectorXd a = VectorXd::Random(count), b = VectorXd::Random(count);
+    for (const long piece : {1L, 7L, 16L, 41L, 1000L}) {
+      CAPTURE(count, piece);
+      GrowingDot sum(a.data(), b.data());
+      for (long known = 0; known < count;) {
+        known = std::min(known + piece, count);
+        sum.grow_to(known);
+      }
+      CHECK(sum.value(count) == array_functions().dot(a.data(), b.data(), count));
     }
   }
 }
@@ -95,14 +113,14 @@ TEST_CASE("array kernel: a number that is not finite is found wherever it stands
           CHECK_FALSE(array_functions(set).range(a.data(), count).finite);
           VectorXd y = VectorXd::Zero(count);
           ArrayRange of_a{}, of_y{};
-          array_functions(set).add_and_measure(a.data(), y.data(), count, &of_a, &of_y);
+          array_functions(set).add_and_measure(1.0, a.data(), y.data(), count, &of_a, &of_y);
           CHECK_FALSE(of_a.finite);
           CHECK_FALSE(of_y.finite);
           const VectorXd fine = VectorXd::Zero(count);
-          array_functions(set).measure_difference(a.data(), fine.data(), count, &of_y, &of_a);
+          array_functions(set).measure_difference(a.data(), fine.data(), 1.0, fine.data(), count, &of_y, &of_a);
           CHECK_FALSE(of_a.finite);
           CHECK_FALSE(of_y.finite);
-          array_functions(set).measure_difference(fine.data(), a.data(), count, &of_y, &of_a);
+          array_functions(set).measure_difference(fine.data(), a.data(), 1.0, fine.data(), count, &of_y, &of_a);
           CHECK(of_a.finite);
           CHECK_FALSE(of_y.finite);
         }
@@ -278,8 +296,9 @@ TEST_CASE("array kernel: no function leaves anything in the upper halves of regi
       check("dot_difference", [&] { f.dot_difference(a, a, a, count); });
       check("range", [&] { f.range(a, count); });
       check("add", [&] { f.add(2.0, a, y, count); });
-      check("add_and_measure", [&] { f.add_and_measure(a, y, count, &ranges[0], &ranges[1]); });
-      check("measure_difference", [&] { f.measure_difference(a, a, count, &ranges[0], &ranges[1]); });
+      check("add_products", [&] { f.add_products(a, a, count / GrowingDot::stride * GrowingDot::stride, y); });
+      check("add_and_measure", [&] { f.add_and_measure(0.5, a, y, count, &ranges[0], &ranges[1]); });
+      check("measure_difference", [&] { f.measure_difference(a, a, 0.5, a, count, &ranges[0], &ranges[1]); });
       check("combine", [&] { f.combine(arrays.data(), a, 3, y, count); });
       for (int pairs = 1; pairs <= most_pairs; ++pairs) {
         check("project", [&] { f.project(a, a, arrays.data(), arrays.data(), pairs, y, y + 20, count); });
