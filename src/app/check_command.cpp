@@ -130,7 +130,7 @@ int check_problem(const CheckArguments& arguments) {
   options.parameters = read_parameters(library.system(), arguments.parameters);
   options.random_states = arguments.random_states;
   std::optional<RunSettings> settings;
-  if (!arguments.constants.empty() || exists("gc." + arguments.name))
+  if (!arguments.constants.empty() || !own_constants_path(arguments.name).empty())
     settings = read_constants_file(constants_path(constants));
   if (library.system().boundary_conditions() > 0 && settings) options.segments = segment_count(*settings);
   const DerivativeCheck check = check_derivatives(library.system(), options);

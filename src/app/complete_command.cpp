@@ -15,6 +15,7 @@
 
 #include "app/commands.hpp"
 #include "constants/constants_table.hpp"
+#include "files/run_file_names.hpp"
 #include "files/solution_file_reader.hpp"
 #include "plugin/source_names.hpp"
 #include "text/user_error.hpp"
@@ -144,7 +145,7 @@ void add_overrides(Candidates& to, const CommandLine& line) {
 void add_option_value(Candidates& to, const CommandLine& line) {
   const Folder folder(line.current);
   if (line.option == "constants") {
-    folder.add(to, "gc.", "", true);
+    folder.add(to, constants_prefix, "", true);
     folder.add(to, "r.", "", false);
   } else if (line.option == "problem") {
     add_plugins(to, folder);
@@ -177,7 +178,7 @@ void add_argument(Candidates& to, const CommandLine& line) {
   };
   const Folder folder(line.current);
   if (is({"run", "simulate", "check", "dat", "constants"}) && place == 0) {
-    folder.add(to, "gc.", "", true);
+    folder.add(to, constants_prefix, "", true);
     if (line.command != "constants") add_plugins(to, folder);
     folder.add_folders(to);
   } else if (is({"run", "simulate", "dat", "constants"})) {

@@ -6,6 +6,11 @@ namespace tchat {
 
 namespace fs = std::filesystem;
 
+std::string constants_file_of(const std::string& name) {
+  const fs::path path(name);
+  return (path.parent_path() / fs::path(constants_prefix).concat(path.filename().string())).string();
+}
+
 std::string sibling_path(const std::string& path, char letter) {
   const fs::path given(path);
   const std::string name = given.filename().string();

@@ -2,8 +2,14 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace tchat {
+
+/// What the names of constants files begin with.
+inline constexpr std::string_view constants_prefix = "gc.";
+/// gc.NAME in the folder of NAME: "models/mems" -> "models/gc.mems".
+std::string constants_file_of(const std::string& name);
 
 /// The name of another file of the same run: "p.mems" -> "q.mems" ("b.x" -> "s.x", "fort.7" -> "fort.8"); letter 'p',
 /// 'q', 'd' or 'r' (the constants). Empty when the name does not tell.

@@ -98,7 +98,7 @@ std::string other_kind(const std::string& path) {
   if (file.extension() == ".dat") return "this is starting data, no q-file";
   if (name.starts_with("p.") || name.starts_with("b.")) return "this is a p-file (the branch's points), no q-file";
   if (name.starts_with("d.")) return "this is a d-file (what the run noted), no q-file";
-  if (name.starts_with("gc.") || name.starts_with("r.")) return "this is a constants file, no q-file";
+  if (name.starts_with(constants_prefix) || name.starts_with("r.")) return "this is a constants file, no q-file";
   return "";
 }
 

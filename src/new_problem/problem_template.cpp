@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "files/run_file_names.hpp"
 #include "formulas/translation.hpp"
 #include "new_problem/template_files.hpp"
 #include "plugin/compiler.hpp"
@@ -63,7 +64,7 @@ std::vector<NewFile> problem_template(const std::string& name) {
   require_name(name);
   std::vector<NewFile> files{{name + ".cpp", template_files::problem},
                              {name + ".dat", template_files::start},
-                             {"gc." + name, template_files::constants},
+                             {constants_file_of(name), template_files::constants},
                              {"Makefile", template_files::makefile}};
   for (NewFile& file : files) file.text = filled(filled(file.text, "@NAME@", name), "@CLASS@", class_name(name));
   return files;

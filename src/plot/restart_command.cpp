@@ -9,6 +9,7 @@
 
 #include "constants/constants_file.hpp"
 #include "files/run_file_names.hpp"
+#include "files/run_set.hpp"
 #include "plugin/plugin_build.hpp"
 #include "setup/recorded_problem.hpp"
 #include "setup/run_request.hpp"
@@ -64,7 +65,7 @@ RestartCommand restart_command(const BranchFile& file, const std::string& plugin
   }
   const auto problem = problem_words(file, plugin, constants);
   const std::string run = run_path(file.path);
-  const bool has_usual_name = default_solution_path(run) == solutions;
+  const bool has_usual_name = output_path('q', run) == solutions;
   RestartCommand command;
   command.to_output =
       fmt::format("tchat run {} -c {} -s {} -o {}_", problem.value_or("PROBLEM"), quoted_for_shell(constants),

@@ -279,12 +279,7 @@ struct Outputs {
   std::string solutions, constants;
 };
 
-Outputs outputs_of(const std::string& name) {
-  const std::string solutions = output_path('q', name);
-  return {solutions, std::filesystem::path(solutions)
-                         .replace_filename("gc." + std::filesystem::path(name).filename().string())
-                         .string()};
-}
+Outputs outputs_of(const std::string& name) { return {output_path('q', name), constants_file_of(name)}; }
 
 /// The start of a curve of grazing tori: nothing is cut.
 std::vector<std::string> begin_grazing_tori(const ResegmentRequest& request, const std::string& path,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "files/run_file_names.hpp"
+#include "files/run_set.hpp"
 #include "text/near_words.hpp"
 #include "text/user_error.hpp"
 
@@ -17,8 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view constants_prefix = "gc.";
-
 bool is_file(const fs::path& path) {
   std::error_code ignored;
   return fs::exists(path, ignored) && !fs::is_directory(path, ignored);
@@ -26,9 +25,8 @@ bool is_file(const fs::path& path) {
 
 /// What -c could have meant: the constants that a run of this name has left, or constants files of like names.
 std::string constants_meant(const fs::path& path) {
-  const fs::path used = path.parent_path() / ("r." + path.filename().string());
-  if (is_file(used))
-    return fmt::format("the constants of the run {} are in {}: -c {}", path.string(), used.string(), used.string());
+  if (const std::string used = output_path('r', path.string()); is_file(used))
+    return fmt::format("the constants of the run {} are in {}: -c {}", path.string(), used, used);
   std::vector<std::string> names;
   std::error_code error;
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -49,10 +47,6 @@ fs::path in_own_folder(const fs::path& path) {
   return fs::is_directory(path, error) ? path / path.filename() : path;
 }
 
-fs::path prefixed(const fs::path& path) {
-  return path.parent_path() / fs::path(constants_prefix).concat(path.filename().string());
-}
-
 /// Removes a leading gc. from the name of the file.
 fs::path without_prefix(const fs::path& path) {
   const std::string file = path.filename().string();
@@ -62,8 +56,8 @@ fs::path without_prefix(const fs::path& path) {
 }  // namespace
 
 std::string own_constants_path(const std::string& name) {
-  for (const fs::path& path : {prefixed(name), prefixed(in_own_folder(name))})
-    if (is_file(path)) return path.string();
+  for (const std::string& path : {constants_file_of(name), constants_file_of(in_own_folder(name).string())})
+    if (is_file(path)) return path;
   return "";
 }
 
@@ -72,16 +66,16 @@ std::string constants_path(const std::string& c) {
   if (const std::string own = own_constants_path(c); !own.empty()) return own;
   if (is_file(path)) return path.string();
   const fs::path name = without_prefix(path);
-  throw UserError(fmt::format("there is no constants file {}{}; {}", prefixed(name).string(),
-                              path == prefixed(name) ? "" : " or " + path.string(), constants_meant(name)));
+  const std::string file = constants_file_of(name.string());
+  throw UserError(fmt::format("there is no constants file {}{}; {}", file, path == file ? "" : " or " + path.string(),
+                              constants_meant(name)));
 }
 
 std::string constants_of_run(const std::optional<std::string>& given, const std::string& solutions) {
   if (given) return constants_path(*given);
   const std::string used = sibling_path(solutions, 'r');
   if (!used.empty() && is_file(used)) return used;
-  const fs::path made = prefixed(fs::path(solutions).parent_path() / run_name(solutions));
-  if (is_file(made)) return made.string();
+  if (const std::string made = constants_file_of(run_path(solutions)); is_file(made)) return made;
   throw UserError(fmt::format("there is no {} with the constants of the run that wrote {}; give them with -c C",
                               used.empty() ? "r-file" : used, solutions));
 }
@@ -98,13 +92,8 @@ std::string data_path(const std::string& d) {
                   with_suffix.string(), path.string()));
 }
 
-std::string default_solution_path(const std::string& s) {
-  const fs::path path(s);
-  return (path.parent_path() / ("q." + path.filename().string())).string();
-}
-
 std::string solution_path(const std::string& s) {
-  const std::string prefixed = default_solution_path(s);
+  const std::string prefixed = output_path('q', s);
   if (is_file(prefixed)) return prefixed;
   if (is_file(s)) return s;
   throw UserError(

@@ -35,8 +35,6 @@ std::string constants_of_run(const std::optional<std::string>& given, const std:
 std::string data_path(const std::string& d);
 /// q.S in the folder of S, or S itself when only that exists. Throws UserError when neither does.
 std::string solution_path(const std::string& s);
-/// q.S in the folder of S, whether it exists or not.
-std::string default_solution_path(const std::string& s);
 
 /// Both exist and are one file, whatever their paths.
 bool same_file(const std::string& a, const std::string& b);

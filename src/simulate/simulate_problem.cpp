@@ -7,6 +7,7 @@
 #include "attractor/attractor_search.hpp"
 #include "attractor/equilibrium_approach.hpp"
 #include "constants/constants_writer.hpp"
+#include "files/run_file_names.hpp"
 #include "files/simulation_files.hpp"
 #include "files/whole_file.hpp"
 #include "files/writable_file.hpp"
@@ -63,10 +64,7 @@ struct OrbitPaths {
   std::string data, constants;
 };
 
-OrbitPaths orbit_paths(const std::string& name) {
-  const fs::path path(name);
-  return {name + ".dat", (path.parent_path() / ("gc." + path.filename().string())).string()};
-}
+OrbitPaths orbit_paths(const std::string& name) { return {name + ".dat", constants_file_of(name)}; }
 
 /// Files NAME.*, gc.NAME can be made from `name`.
 void check_name(const std::string& name, const char* option) {

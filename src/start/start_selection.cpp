@@ -8,6 +8,7 @@
 #include "constants/constants_table.hpp"
 #include "constants/settings_type.hpp"
 #include "files/labelled_solution.hpp"
+#include "files/run_set.hpp"
 #include "files/solution_file_reader.hpp"
 #include "files/writable_file.hpp"
 #include "problem_type/family.hpp"
@@ -94,7 +95,7 @@ SelectedStart select_start(const RunRequest& request, const RunSettings& setting
                       label.type, label.number));
     return family_of(settings).start_from_data(data_path(request.data.value_or(request.name)), settings, system);
   }
-  const std::string solutions = default_solution_path(request.name);
+  const std::string solutions = output_path('q', request.name);
   if (exists(solutions)) return start_from_solution(solutions, settings, system, free_parameters, request);
   if (is_first_label) return family_of(settings).start_from_data(data_path(request.name), settings, system);
   throw UserError(

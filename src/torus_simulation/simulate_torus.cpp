@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "constants/constants_writer.hpp"
 #include "constants/settings_type.hpp"
+#include "files/run_file_names.hpp"
 #include "files/run_set.hpp"
 #include "files/solution_file.hpp"
 #include "files/whole_file.hpp"
@@ -117,8 +117,7 @@ int simulate_torus(const SimulationRequest& request, const std::string& torus_na
   const SimulationStart start = simulation_start(request, constants, system);
   const std::string name = torus_name.empty() ? request.output.value_or(request.name) : torus_name;
   const std::string solutions = output_path('q', name);
-  const std::string constants_file =
-      (std::filesystem::path(name).parent_path() / ("gc." + std::filesystem::path(name).filename().string())).string();
+  const std::string constants_file = constants_file_of(name);
   require_writable(solutions);
   require_writable(constants_file);
   if (!constants.path.empty() && same_file(constants_file, constants.path))

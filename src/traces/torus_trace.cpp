@@ -28,11 +28,11 @@ std::string constants_beside(const std::string& path) {
   std::error_code error;
   const std::string used = sibling_path(path, 'r');
   if (!used.empty() && fs::is_regular_file(used, error)) return used;
-  const fs::path made = fs::path(path).parent_path() / ("gc." + run_name(path));
-  if (fs::is_regular_file(made, error)) return made.string();
+  const std::string made = constants_file_of(run_path(path));
+  if (fs::is_regular_file(made, error)) return made;
   throw UserError(
       fmt::format("{}: it holds tori, and how many segments one return has stands in {} or {}, which are not there",
-                  path, used.empty() ? "the r-file" : used, made.string()));
+                  path, used.empty() ? "the r-file" : used, made));
 }
 
 /// The same curve at `count` phases, w being taken out of each row and put back.

@@ -14,4 +14,6 @@ TEST_CASE("Names of files of one run") {
   CHECK(sibling_path("mems", 'q').empty());
   CHECK(run_name("results/p.mems") == "mems");
   CHECK(run_name("fort.7") == "fort.7");
+  CHECK(constants_file_of("models/mems") == "models/gc.mems");
+  CHECK(constants_file_of("mems") == "gc.mems");
 }

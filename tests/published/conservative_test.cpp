@@ -516,6 +516,9 @@ TEST_CASE("tchat check names the functions that do not conserve what CONSERVED n
   CHECK(lost.status == 1);
   CHECK(contains(lost.out, "energy: conserved by field 1 (flow)"));
   CHECK(contains(lost.out, "energy: NOT conserved by jump 1 (bounce)"));
+  // The constants are found beside a problem in another folder too.
+  REQUIRE(workspace.shell("mkdir models && mv ball.* gc.ball models").status == 0);
+  CHECK(contains(workspace.succeed("check models/ball").out, "energy: conserved by jump 1 (bounce)"));
 }
 
 TEST_CASE("tchat grazing refuses the label of a family without a parameter") {
