@@ -120,9 +120,13 @@ TEST_CASE("array kernel: a number that is not finite is found wherever it stands
           array_functions(set).measure_difference(a.data(), fine.data(), 1.0, fine.data(), count, &of_y, &of_a);
           CHECK_FALSE(of_a.finite);
           CHECK_FALSE(of_y.finite);
-          array_functions(set).measure_difference(fine.data(), a.data(), 1.0, fine.data(), count, &of_y, &of_a);
-          CHECK(of_a.finite);
-          CHECK_FALSE(of_y.finite);
+          for (const bool is_c : {false, true}) {
+            const double* const b = is_c ? fine.data() : a.data();
+            const double* const c = is_c ? a.data() : fine.data();
+            array_functions(set).measure_difference(fine.data(), b, 1.0, c, count, &of_y, &of_a);
+            CHECK(of_a.finite);
+            CHECK_FALSE(of_y.finite);
+          }
         }
 }
 

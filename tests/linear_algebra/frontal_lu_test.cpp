@@ -116,6 +116,25 @@ TEST_CASE("frontal matrices: one object serves many matrices of a pattern") {
   }
 }
 
+TEST_CASE("frontal matrices: entries at one place are summed, in border rows as elsewhere") {
+  const Ring whole(6, 2, 2, 7);
+  Ring parts = whole;
+  for (std::size_t k = 0; k < whole.values.size(); k += 3) {
+    parts.rows.push_back(whole.rows[k]), parts.columns.push_back(whole.columns[k]);
+    parts.values.push_back(0.75 * whole.values[k]);
+    parts.values[k] -= parts.values.back();
+  }
+  REQUIRE(parts.dense().isApprox(whole.dense(), 1e-15));
+  std::optional<FrontalLu> lu = FrontalLu::make(parts.size, parts.rows, parts.columns, parts.groups);
+  REQUIRE(lu);
+  REQUIRE(lu->factorize(parts.values));
+  const VectorXd x = random_vector(parts.size, 8), b = whole.dense() * x;
+  VectorXd found(parts.size);
+  lu->solve(b.data(), found.data());
+  const double rounding = 1e-13 * test::condition_number(with_unit_rows(whole.dense()));
+  CHECK((found - x).norm() < rounding * x.norm());
+}
+
 TEST_CASE("frontal matrices: not for groups that all touch one another, nor for rows without groups") {
   Ring a(30, 2, 1, 1);
   std::mt19937 generator(4);
