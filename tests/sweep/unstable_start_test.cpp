@@ -83,7 +83,7 @@ const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
 
 }  // namespace
 
-TEST_CASE("a motion that leaves an unstable focus is not chaotic, however slowly") {
+TEST_CASE("a motion that leaves an unstable focus is not chaotic, however slowly", "[slow]") {
   for (const auto& [rate, distance] : {std::pair(3e-3, 1e-3), {0.02, 1e-12}}) {
     CAPTURE(rate, distance);
     const AttractorSample sample =
@@ -93,7 +93,7 @@ TEST_CASE("a motion that leaves an unstable focus is not chaotic, however slowly
   }
 }
 
-TEST_CASE("a motion on or next to an unstable torus is not chaotic") {
+TEST_CASE("a motion on or next to an unstable torus is not chaotic", "[slow]") {
   for (const double rate : {3e-3, 0.1})
     for (const double distance : {0.0, 1e-4}) {
       CAPTURE(rate, distance);
@@ -109,7 +109,7 @@ TEST_CASE("a motion on or next to an unstable torus is not chaotic") {
   CHECK(kept.exponents(0) == Approx(0.1).epsilon(1e-4));
 }
 
-TEST_CASE("a motion on or next to a torus with several unstable directions is not chaotic") {
+TEST_CASE("a motion on or next to a torus with several unstable directions is not chaotic", "[slow]") {
   for (const double rate : {0.02, 0.2})
     for (const double distance : {0.0, 1e-6}) {
       CAPTURE(rate, distance);
