@@ -13,6 +13,7 @@
 #include "files/run_file_names.hpp"
 #include "files/solution_identifier.hpp"
 #include "hybrid/parameter_vector.hpp"
+#include "problem_type/family.hpp"
 #include "problem_type/problem_type.hpp"
 #include "text/number.hpp"
 #include "text/text_file.hpp"
