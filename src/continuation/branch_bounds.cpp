@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "bvp/condensed_system.hpp"
 #include "bvp/orbit_accuracy.hpp"
 #include "continuation/solution_measure.hpp"
 

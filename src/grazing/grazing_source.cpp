@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "constants/settings_type.hpp"
+#include "files/solution_file_reader.hpp"
 #include "hybrid/event_at.hpp"
 #include "hybrid/identity_jump.hpp"
 #include "resegment/contact_point.hpp"

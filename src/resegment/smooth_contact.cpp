@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bvp/orbit.hpp"
+#include "files/solution_file_reader.hpp"
 #include "hybrid/identity_jump.hpp"
 #include "hybrid/index_vector.hpp"
 #include "resegment/contact_point.hpp"

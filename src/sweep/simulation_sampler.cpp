@@ -21,6 +21,7 @@
 #include "simulation/chattering.hpp"
 #include "simulation/decay.hpp"
 #include "simulation/watched_flow.hpp"
+#include "sweep/attractor_numbering.hpp"
 #include "sweep/incoming_states.hpp"
 #include "sweep/largest_values.hpp"
 #include "text/user_error.hpp"
