@@ -105,11 +105,12 @@ bool AttractorSearch::conclude(const HybridSimulation& motion) {
 
 bool AttractorSearch::try_rest(const HybridSimulation& motion) {
   if (last_.empty()) return false;
+  const IndexVector& index = last_.back().index;
+  const std::size_t looked_at = std::max(passed_.size() / 2, last_.size());
   std::vector<VectorXd> states;
-  for (const SimulatedSegment& segment : last_)
-    if (segment.index == last_.back().index) states.push_back(segment.end);
-  equilibrium_ =
-      approached_equilibrium(motion.system(), last_.back().mode.field(), states, motion.parameters(), ignorable_);
+  for (std::size_t k = passed_.size() - looked_at; k < passed_.size(); ++k)
+    if (passed_[k].index == index) states.push_back(passed_[k].end);
+  equilibrium_ = approached_equilibrium(motion.system(), index, states, motion.parameters(), ignorable_);
   return equilibrium_.has_value();
 }
 

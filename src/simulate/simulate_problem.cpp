@@ -269,7 +269,7 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
   } else if (rest = equilibrium_of(search, simulation, result.last); rest) {
     say(rest_text(*rest));
   } else {
-    say(no_orbit_text(result, request.plan, search.doubt()));
+    say(no_orbit_text(result, request.plan, search));
   }
   const bool is_attracting = orbit.converged && orbit.stability() == OrbitStability::stable;
   if (exponents && search.equilibrium() && !has_wanted_length(request.plan)) {

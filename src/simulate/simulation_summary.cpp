@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "simulate/start_notice.hpp"
 
@@ -184,7 +185,7 @@ std::string nothing_recorded_text(const SimulationPlan& plan) {
                      counted(long{plan.max_period}, "event"));
 }
 
-std::string no_orbit_text(const SimulationResult& result, const SimulationPlan& plan, const std::string& doubt) {
+std::string no_orbit_text(const SimulationResult& result, const SimulationPlan& plan, const AttractorSearch& search) {
   if (result.accumulation || result.dies_out) return "";
   switch (result.last.ended_by) {
     case SegmentEnd::failed:
@@ -192,9 +193,16 @@ std::string no_orbit_text(const SimulationResult& result, const SimulationPlan& 
     case SegmentEnd::no_event:
       return "";
     default:
-      if (!doubt.empty())
+      if (!search.doubt().empty())
         return fmt::format("Undecided after {} events: {}. A longer simulation decides (--transient-events).\n",
-                           result.events, doubt);
+                           result.events, search.doubt());
+      if (const std::optional<int> period = search.repeats_after())
+        return fmt::format(
+            "The last events repeat, within {:g} of the orbit's range, after {}, but Newton's method finds no "
+            "isolated\n"
+            "periodic orbit there. It may be one of a family, as where the energy is conserved (--refine corrects the\n"
+            "last period to the orbit nearest to it), or the motion may still drift (--transient-events).\n",
+            plan.recognition, counted(long{*period}, "event"));
       return fmt::format(
           "No periodic orbit recognised: the last events do not repeat, within {:g} of the orbit's range, after 1 to "
           "{} events.\nIt may need longer (--transient-time, --events), have a longer period (--max-period), be "

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "attractor/attractor_search.hpp"
 #include "simulate/simulation_start.hpp"
 #include "simulation/found_orbit.hpp"
 #include "simulation/simulation_run.hpp"
@@ -33,7 +34,7 @@ std::string not_refined_text(const FoundOrbit& orbit, long events);
 /// Why there is no period to refine.
 std::string nothing_recorded_text(const SimulationPlan& plan);
 
-/// Why no orbit was recognised and what may help; `doubt` is what is known of an orbit nearby, or "".
-std::string no_orbit_text(const SimulationResult& result, const SimulationPlan& plan, const std::string& doubt);
+/// Why `search` recognised no orbit and what may help.
+std::string no_orbit_text(const SimulationResult& result, const SimulationPlan& plan, const AttractorSearch& search);
 
 }  // namespace tchat

@@ -44,6 +44,14 @@ struct Diagonal {
   }
 };
 
+/// The same with an event whose surface goes through the equilibrium.
+struct CutDiagonal : Diagonal {
+  template <class T>
+  T event(int, const T* x, const T*) const {
+    return x[0] - x[1];
+  }
+};
+
 /// Two planar oscillators that attract to the unit circle, of frequencies PAR(1) and PAR(2), at the rate 2 each; event
 /// 1: the first goes down through y = 0.
 struct TwoCircles {

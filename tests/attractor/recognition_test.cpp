@@ -220,15 +220,25 @@ TEST_CASE("a motion that comes to rest is no orbit, however small its turns have
 }
 
 TEST_CASE("an equilibrium that attracts, and motions that do not come to one") {
-  const HybridSystem& system = system_of<Diagonal>();
-  const std::vector<VectorXd> falling = {Eigen::Vector3d(1.0, 1.0, 1.0), Eigen::Vector3d(0.5, 0.5, 0.5),
-                                         Eigen::Vector3d(0.2, 0.2, 0.2), Eigen::Vector3d(0.1, 0.1, 0.1)};
+  const HybridSystem& system = system_of<CutDiagonal>();
+  const IndexVector index{1, 1, 1};
+  const auto at_distances = [](const std::vector<double>& distances) {
+    std::vector<VectorXd> states;
+    for (const double d : distances) states.push_back(Eigen::Vector3d(d, d, d));
+    return states;
+  };
+  const std::vector<double> falling{1.0, 0.5, 0.2, 0.1};
   const ParameterVector sink = parameters({-1.0, -2.0, -1.0});
-  const std::vector<VectorXd> rising(falling.rbegin(), falling.rend());
-  REQUIRE(approached_equilibrium(system, 1, falling, sink, {}).has_value());
-  CHECK(approached_equilibrium(system, 1, falling, sink, {})->norm() < 1e-12);
-  CHECK_FALSE(approached_equilibrium(system, 1, falling, parameters({1.0, -2.0, -1.0}), {}).has_value());
-  CHECK_FALSE(approached_equilibrium(system, 1, rising, sink, {}).has_value());
+  REQUIRE(approached_equilibrium(system, index, at_distances(falling), sink, {}).has_value());
+  CHECK(approached_equilibrium(system, index, at_distances(falling), sink, {})->norm() < 1e-12);
+  const auto refused = [&](const HybridSystem& by, const std::vector<double>& distances, const ParameterVector& par) {
+    return !approached_equilibrium(by, index, at_distances(distances), par, {}).has_value();
+  };
+  CHECK(refused(system, falling, parameters({1.0, -2.0, -1.0})));
+  CHECK(refused(system, {0.1, 0.2, 0.5, 1.0}, sink));
+  CHECK(refused(system, {2.0, 1.5, 1.25, 1.125, 1.0625}, sink));                        // towards a cycle at distance 1
+  CHECK(refused(system, {1.0, 1.0 - 1e-8, 1.0 - 2e-8, 1.0 - 3e-8, 1.0 - 4e-8}, sink));  // no more than errors
+  CHECK(refused(system_of<Diagonal>(), falling, sink));  // no state at this event can be near it
 }
 
 TEST_CASE("the signs of exponents, that along the flow left out") {
