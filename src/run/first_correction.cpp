@@ -233,20 +233,25 @@ std::string moved_beside(const Orbit& start, const Orbit& found, const DefiningS
 
 /// A start at a turning point of ICP(1), such as an impacting orbit at the grazing where it begins: with ICP(1) fixed
 /// Newton's method only halves its error, and rounding decides on which side of the turning point it ends, and so where
-/// the branch is followed to. By minimum norm it is the turning point itself.
-void settle_turning_point(PathFollower& follower, const SelectedStart& selected, PathPoint& point,
+/// the branch is followed to. By minimum norm it is the turning point itself. A monitor keeps its value to first order
+/// only: with an energy as ICP(1), stationary where a family begins to impact, Newton's method goes far along the
+/// family.
+void settle_turning_point(PathFollower& follower, const SelectedStart& selected, double asked, PathPoint& point,
                           NewtonResult& result) {
   constexpr int regular_iterations = 3;
   constexpr double turning = 1e-4;
   constexpr double same_value = 1e-9;
-  if (!result.converged() || result.iterations <= regular_iterations ||
-      std::abs(follower.principal_direction(point)) > turning)
-    return;
+  const Eigen::Index k = follower.principal() - 1;
+  const auto move = [&](const PathPoint& to) { return std::abs(to.orbit.par(k) - asked); };
+  const bool is_far = move(point) > relative_move * std::abs(asked) + absolute_move;
+  const bool is_turning =
+      result.iterations > regular_iterations && std::abs(follower.principal_direction(point)) <= turning;
+  if (!result.converged() || !(is_far || is_turning)) return;
   PathPoint at = follower.make_point(selected.start.orbit);
   const NewtonResult there = follower.start_by_minimum_norm(at);
-  const Eigen::Index k = follower.principal() - 1;
-  if (there.converged() &&
-      std::abs(at.orbit.par(k) - point.orbit.par(k)) <= same_value * (1.0 + std::abs(at.orbit.par(k)))) {
+  const double difference = std::abs(at.orbit.par(k) - point.orbit.par(k));
+  const bool is_same = difference <= same_value * (1.0 + std::abs(at.orbit.par(k)));
+  if (there.converged() && (is_far ? move(at) <= move(point) : is_same)) {
     point = std::move(at);
     result = there;
     return;
@@ -267,7 +272,7 @@ FirstCorrection correct_start(PathFollower& follower, const DefiningSystem& syst
   const double asked = start.par(principal - 1);
   PathPoint point = follower.make_point(start);
   NewtonResult result = follower.start_at_fixed_parameter(point);
-  settle_turning_point(follower, selected, point, result);
+  settle_turning_point(follower, selected, asked, point, result);
   const std::string trouble = describe(result.status);
   FirstCorrection corrected{{}, follower.newton().history(), {}, {}};
 
