@@ -30,7 +30,8 @@ class ConservativeOrbitSystem final : public PeriodicOrbitSystem {
 
   int conserved_quantities() const override { return 1; }
   std::optional<double> unfolding(const Orbit& x) const override { return x.par(layout().unfolding(segments()) - 1); }
-  /// Where lambda is not zero: H changes along the orbit.
+  /// Where lambda is not zero, H changes along the orbit. Where it is, another function may be the conserved one: H_x f
+  /// is looked at within segments, H at their jumps.
   std::string why_no_solution(const Orbit& x) const override;
 
  protected:
@@ -42,11 +43,17 @@ class ConservativeOrbitSystem final : public PeriodicOrbitSystem {
   bool closes(int s) const { return s == segments() - 1; }
   /// H_x at x_1(0).
   void find_gradient(const Orbit& x) const;
+  std::string why_not_closed(const Orbit& x) const;
+  std::string why_not_constant(const Orbit& x) const;
+  std::string why_not_constant_on(int s, const Orbit& x) const;
+  std::string why_not_kept_by_jump(int s, const Orbit& x) const;
+  std::string segment_name(int s) const;
+  std::string jump_name(int s) const;
   double value(const double* x, const Orbit& orbit) const { return conserved_.value(x, orbit.par.data()); }
 
   QuantityFunction conserved_;
   std::string name_;
-  mutable std::vector<double> gradient_, unused_;
+  mutable std::vector<double> gradient_, unused_, flow_, after_;
 };
 
 }  // namespace tchat

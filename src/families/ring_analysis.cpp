@@ -55,12 +55,14 @@ bool RingAnalysis::has_fixed_phase() const {
 
 SpecialPoint RingAnalysis::shrunk(const Orbit& x) const {
   const std::optional<double> omega = hopf_frequency(system_, x);
-  return {omega ? PointType::hopf : PointType::end,
+  const bool is_family = system_.conserved_quantities() > 0;  // at an equilibrium that need not change its stability
+  const std::string what = is_family ? "linear oscillation" : "Hopf bifurcation";
+  return {omega && !is_family ? PointType::hopf : PointType::end,
           {},
           false,
           fmt::format("the orbit has shrunk to a point, {}: an equilibrium, where the branch of periodic orbits ends{}",
                       state_text(system_.system(), x, x.start(0)),
-                      omega ? fmt::format(" (Hopf bifurcation, omega = {:.6g})", *omega) : "")};
+                      omega ? fmt::format(" ({}, omega = {:.6g})", what, *omega) : "")};
 }
 
 std::string RingAnalysis::passed_infinity(const PathPoint& from, const PathPoint& to, double ds) const {

@@ -527,3 +527,107 @@ TEST_CASE("tchat grazing refuses the label of a family without a parameter") {
   run_to_touch(workspace, chain);
   check_refused(workspace, "grazing q.family GR1 -p chain", 2, "along which no parameter changes");
 }
+
+// ---- a mass with a cubic spring and an elastic wall -----------------------------------------------------------------
+
+namespace {
+
+/// Family `family` from rest to the first touch of the wall at x = 0.7, with a label at the energy 0.2.
+void run_to_wall(const Workspace& workspace) {
+  workspace.write("walled.tch",
+                  "par c=1\nx' = v\nv' = -x - c*x^3\nevent wall = 0.7 - x\njump bounce: v -> -v\n"
+                  "aux energy = v^2/2 + x^2/2 + x^4/4\naux product = x*v\n");
+  workspace.write("walled.dat", "0 0\n");
+  workspace.write("gc.walled", "NDIM=2 IPS=1 ICP=[c] NMX=1 GCHGRZIND=[[1]]\n");
+  workspace.succeed("run walled -o rest -q");
+  workspace.succeed(
+      "run walled -q -c r.rest -s rest -o family IRS=1 IPS=180 ISW=-1 CONSERVED=energy ICP=[energy,period] NMX=60 "
+      "UZR={energy:0.2}");
+}
+
+}  // namespace
+
+TEST_CASE("with one degree of freedom a family begins to impact at its least energy") {
+  const Workspace workspace;
+  run_to_wall(workspace);
+  const double touching = 0.49 / 2.0 + 0.2401 / 4.0;
+  workspace.succeed("resegment q.family GR1 --to impacting -o contact");
+  const Outcome outcome = workspace.succeed("run walled -c contact -s contact -o modes NMX=20");
+  CHECK(!contains(outcome.out, "inadmissible"));
+  // At the touch the energy is stationary, as v^2 / 2: v is known to the square root of a tolerance of 1e-7, E better.
+  const auto pairs = pairs_of(workspace, "modes", "energy", "period");
+  CHECK(std::abs(pairs.front().first - touching) < 1e-6);
+  REQUIRE(pairs.size() == 20);
+  CHECK(pairs.back().first > touching + 0.01);
+  workspace.succeed("verify modes -p walled");
+}
+
+TEST_CASE("a function that changes along the orbits is not conserved, whatever lambda is") {
+  const Workspace workspace;
+  run_to_wall(workspace);
+  check_refused(workspace, "run walled -c r.family -s family -o new IRS=UZ1 CONSERVED=product ICP=[product,period]", 1,
+                "CONSERVED = product is not conserved: on segment 1 (field flow) it changes at the rate");
+  check_refused(workspace, "run walled -c r.family -s family -o new IRS=UZ1 ICP=[enrgy,period]", 2,
+                "enrgy is no parameter of problem Walled (it has PAR(1): c) and no monitor (period, energy, product, "
+                "max(x), ...); did you mean energy?");
+  check_refused(workspace, "resegment q.family GR1 --to grazing-curve -o curve", 2,
+                "curves of grazing orbits have no conserved function");
+}
+
+TEST_CASE("a family that shrinks to an equilibrium ends at no Hopf bifurcation") {
+  const Workspace workspace;
+  run_to_wall(workspace);
+  const Outcome outcome =
+      workspace.succeed("run walled -c r.family -s family -o down IRS=UZ1 ICP=[energy,period] DS=-0.02 NMX=200 UZR={}");
+  CHECK(contains(outcome.out, "of periodic orbits ends (linear oscillation, omega = 1)"));
+  CHECK(!contains(outcome.out, "Hopf"));
+}
+
+TEST_CASE("motions that keep their energy converge to no equilibrium, and repeat themselves") {
+  const Workspace workspace;
+  workspace.write("stop.tch", R"(x' = v
+field out: v' = -x
+field in: v' = -x - 3*(x-0.4)
+event touch = 0.4 - x
+event leave = x - 0.4
+jump none:
+after start: out until touch -> identity
+after touch: in until leave -> identity
+after leave: out until touch -> identity
+)");
+  CHECK(!contains(workspace.succeed("simulate stop --state 1.3,0").out, "converges"));
+  workspace.write("walls.tch", R"(x' = v
+v' = -1
+event floor = x
+event roof = 1 - x
+jump bounce: v -> -v
+after any: flow until floor -> bounce, roof -> bounce
+)");
+  const std::string seen = workspace.succeed("simulate walls --state 0.5,2 --events 20").out;
+  CHECK(contains(seen, "The last events repeat, within 1e-06 of the orbit's range, after 2 events"));
+  CHECK(contains(workspace.succeed("simulate walls --state 0.5,2 --refine").out, "Periodic orbit"));
+}
+
+TEST_CASE("a multiplier through 1 at fixed parameters is no missing point of a curve that holds the energy") {
+  const Workspace workspace;
+  workspace.write("pair.tch", R"(par d=0, f=0
+u' = p
+w' = q
+p' = w-2*u-d*p
+q' = u-w-d*q+f*q
+event stop = 1-w
+jump bounce: q -> -q
+aux energy = (p^2+q^2+u^2+(w-u)^2)/2
+)");
+  workspace.write("pair.dat", "0 0 0 0\n");
+  workspace.write("gc.pair", "NDIM=4 IPS=1 ICP=[d] NMX=1 GCHGRZIND=[[1]]\n");
+  workspace.succeed("run pair -o rest -q");
+  workspace.succeed(
+      "run pair -q -c r.rest -s rest -o family IRS=1 IPS=180 ISW=-1 CONSERVED=energy ICP=[energy,period] NMX=50");
+  workspace.succeed("resegment q.family GR1 --to impacting -o contact");
+  workspace.succeed("run pair -q -c contact -s contact -o modes UZR={period:9}");
+  const Outcome outcome = workspace.succeed(
+      "run pair -c r.modes -s modes -o kept IRS=UZ1 CONSERVED= ICP=[d,f,energy] HOLD=[energy] UZR={} DS=0.01");
+  CHECK(!contains(outcome.out, "may be missing"));
+  CHECK(contains(workspace.read("d.kept"), "through +1; a curve that holds monitors need have none there"));
+}
