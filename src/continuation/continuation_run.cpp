@@ -398,8 +398,11 @@ void ContinuationRun::accept(const SpecialPoint& special) {
     if (const double growth = change ? growth_exponent(system_, here_.orbit) : 0.0; growth > most_growth)
       sink_.note(number_,
                  fmt::format("Multipliers are not known: rounding grows by exp({:.3g}) on the way round", growth));
+    else if (change && change->is_through_one && !follower_.held().empty())
+      sink_.note(number_, fmt::format("At fixed parameters {}; a curve that holds monitors need have none there",
+                                      change->point.text));
     else if (change)
-      report(*change);
+      report(change->point);
     lost_before_ = summary_.lost.size();
   }
   mark_accepted();

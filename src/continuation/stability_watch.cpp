@@ -26,7 +26,7 @@ void StabilityWatch::remember(const Point& point) {
   known_->multipliers = point.multipliers;
 }
 
-std::optional<LostPoint> StabilityWatch::add(const Point& point, bool is_reported) {
+std::optional<UnlabelledChange> StabilityWatch::add(const Point& point, bool is_reported) {
   if (explains_change(point.special) || !point.multipliers.determined() || is_reported || !known_) {
     if (explains_change(point.special))
       known_.reset();
@@ -35,10 +35,10 @@ std::optional<LostPoint> StabilityWatch::add(const Point& point, bool is_reporte
     return std::nullopt;
   }
   const StabilityChange change = stability_change(known_->multipliers, point.multipliers);
-  std::optional<LostPoint> result;
+  std::optional<UnlabelledChange> result;
   if (change.count != 0)
-    result = LostPoint{point.number, describe(change, point.multipliers.are_eigenvalues), known_->parameter,
-                       point.parameter};
+    result = {{point.number, describe(change, point.multipliers.are_eigenvalues), known_->parameter, point.parameter},
+              is_through_one(change, point.multipliers.are_eigenvalues)};
   // A multiplier that takes several points to cross is compared with the last point at which its side was known.
   if (result || count_unstable(point.multipliers).undecided <= count_unstable(known_->multipliers).undecided)
     remember(point);

@@ -7,6 +7,11 @@
 
 namespace tchat {
 
+struct UnlabelledChange {
+  LostPoint point;
+  bool is_through_one;  ///< of a real multiplier: on a curve that holds monitors that need not be a special point
+};
+
 class StabilityWatch {
  public:
   /// An accepted point.
@@ -22,7 +27,7 @@ class StabilityWatch {
 
   /// The change since the last point whose multipliers are known. Nothing where there is none, where a bifurcation or
   /// an impact velocity through zero is labelled in between, or `is_reported`: a special point that may be missing is.
-  std::optional<LostPoint> add(const Point& point, bool is_reported);
+  std::optional<UnlabelledChange> add(const Point& point, bool is_reported);
 
  private:
   void remember(const Point& point);

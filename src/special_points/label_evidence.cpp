@@ -103,6 +103,11 @@ StabilityChange stability_change(const FloquetMultipliers& before, const Floquet
   return change;
 }
 
+bool is_through_one(const StabilityChange& change, bool are_eigenvalues) {
+  const bool is_real = change.before.imag() == 0.0 && change.after.imag() == 0.0;
+  return is_real && !are_eigenvalues && change.after.real() > 0.0;
+}
+
 std::string describe(const StabilityChange& change, bool are_eigenvalues) {
   const auto text = [](const Complex& mu) {
     return mu.imag() == 0.0
@@ -110,10 +115,10 @@ std::string describe(const StabilityChange& change, bool are_eigenvalues) {
                : fmt::format("{:.6g} {} {:.6g} i", mu.real(), mu.imag() < 0.0 ? "-" : "+", std::abs(mu.imag()));
   };
   const bool is_real = change.before.imag() == 0.0 && change.after.imag() == 0.0;
-  const char* through = are_eigenvalues             ? "the imaginary axis"
-                        : !is_real                  ? "the unit circle"
-                        : change.after.real() > 0.0 ? "+1"
-                                                    : "-1";
+  const char* through = are_eigenvalues                           ? "the imaginary axis"
+                        : !is_real                                ? "the unit circle"
+                        : is_through_one(change, are_eigenvalues) ? "+1"
+                                                                  : "-1";
   const std::string kind = are_eigenvalues ? "eigenvalue" : "multiplier";
   const int count = std::abs(change.count);
   const std::string what = count == 1 ? fmt::format("one {} goes", kind) : fmt::format("{} {}s go, one", count, kind);

@@ -59,6 +59,9 @@ UnstableCount count_unstable(const FloquetMultipliers& multipliers);
 /// count = 0 where those that are undecided explain the difference, or multipliers of either point are not known.
 StabilityChange stability_change(const FloquetMultipliers& before, const FloquetMultipliers& after);
 
+/// Of a real multiplier.
+bool is_through_one(const StabilityChange& change, bool are_eigenvalues);
+
 /// "a multiplier goes from 0.93 to 1.49, through +1, without a label"
 std::string describe(const StabilityChange& change, bool are_eigenvalues);
 
