@@ -9,15 +9,11 @@
 
 namespace tchat {
 
-namespace {
-
 std::string user_function_name(const HybridSystem& system, int k) {
   const tchat_problem& table = system.table();
   const bool named = table.user_value_names != nullptr && table.user_value_names[k - 1] != nullptr;
   return named ? table.user_value_names[k - 1] : fmt::format("PVLS({})", k);
 }
-
-}  // namespace
 
 std::optional<Quantity> find_quantity(const HybridSystem& system, const std::string& name) {
   for (int k = 1; k <= system.dimension(); ++k)

@@ -16,6 +16,9 @@ struct Quantity {
   int index = 1;  ///< from 1
 };
 
+/// Of user function k: its own, or PVLS(k).
+std::string user_function_name(const HybridSystem& system, int k);
+
 /// By its name: "x" or U(1) for states, the name of a user function or PVLS(1), the name of an event function or h1.
 std::optional<Quantity> find_quantity(const HybridSystem& system, const std::string& name);
 

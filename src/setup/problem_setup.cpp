@@ -63,19 +63,6 @@ bool is_known(const HybridSystem& system, int k) {
   return k == system.layout().rotation() || is_own_parameter(system, k);
 }
 
-std::string parameter_list(const HybridSystem& system) {
-  constexpr int most = 60, first = 20;  // of more, the first and the last
-  std::string names;
-  for (int i = 1; i <= system.parameters(); ++i)
-    if (system.parameters() <= most || i <= first || i == system.parameters())
-      names += fmt::format("{}{}", i > 1 ? ", " : "", system.parameter_name(i));
-    else if (i == first + 1)
-      names += ", ...";
-  if (names.empty()) return "none";
-  return system.parameters() == 1 ? "PAR(1): " + names
-                                  : fmt::format("PAR(1) to PAR({}): {}", system.parameters(), names);
-}
-
 /// In a ring, modes have the states that jumps set.
 void check_modes(const HybridSystem& system, const RunSettings& settings, const SettingsSource& source) {
   const Signature signature = settings.signature();
@@ -220,6 +207,19 @@ std::vector<std::string> check_settings_against(const HybridSystem& system, cons
   check_monitors(system, settings, source);
   check_parameters(system, settings, source, warnings);
   return warnings;
+}
+
+std::string parameter_list(const HybridSystem& system) {
+  constexpr int most = 60, first = 20;  // of more, the first and the last
+  std::string names;
+  for (int i = 1; i <= system.parameters(); ++i)
+    if (system.parameters() <= most || i <= first || i == system.parameters())
+      names += fmt::format("{}{}", i > 1 ? ", " : "", system.parameter_name(i));
+    else if (i == first + 1)
+      names += ", ...";
+  if (names.empty()) return "none";
+  return system.parameters() == 1 ? "PAR(1): " + names
+                                  : fmt::format("PAR(1) to PAR({}): {}", system.parameters(), names);
 }
 
 int parameter_index(const HybridSystem& system, const std::string& name, const std::string& where) {

@@ -29,6 +29,8 @@ struct SettingsSource {
 std::vector<std::string> check_settings_against(const HybridSystem& system, const RunSettings& settings,
                                                 const SettingsSource& source);
 
+/// "PAR(1) to PAR(3): k, c, g", of very many the first and the last: for messages.
+std::string parameter_list(const HybridSystem& system);
 /// PAR index of a name given by the user: a number, or one of the problem's names. Throws UserError that begins with
 /// `where` and lists the names.
 int parameter_index(const HybridSystem& system, const std::string& name, const std::string& where);
