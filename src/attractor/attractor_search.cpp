@@ -106,11 +106,13 @@ bool AttractorSearch::conclude(const HybridSimulation& motion) {
 bool AttractorSearch::try_rest(const HybridSimulation& motion) {
   if (last_.empty()) return false;
   const IndexVector& index = last_.back().index;
-  const std::size_t looked_at = std::max(passed_.size() / 2, last_.size());
-  std::vector<VectorXd> states;
-  for (std::size_t k = passed_.size() - looked_at; k < passed_.size(); ++k)
-    if (passed_[k].index == index) states.push_back(passed_[k].end);
-  equilibrium_ = approached_equilibrium(motion.system(), index, states, motion.parameters(), ignorable_);
+  const auto is_alike = [&index](const auto& event) { return event.index == index; };
+  const auto least = static_cast<std::size_t>(std::count_if(last_.begin(), last_.end(), is_alike));
+  std::vector<VectorXd> states;  // the newest first
+  for (std::size_t back = 1; back <= passed_.size() && (2 * back <= passed_.size() || states.size() < least); ++back)
+    if (const Passed& at = passed_[passed_.size() - back]; is_alike(at)) states.push_back(at.end);
+  std::reverse(states.begin(), states.end());
+  equilibrium_ = approached_equilibrium(motion.system(), index, states, least, motion.parameters(), ignorable_);
   return equilibrium_.has_value();
 }
 

@@ -45,7 +45,7 @@ class AttractorSearch {
   bool conclude(const HybridSimulation& motion);
 
   const std::optional<SettledOrbit>& orbit() const { return orbit_; }
-  /// The last so many events repeat those before them, whether an orbit was found there or not.
+  /// Number of events after which the last ones repeat, whether an orbit was found there or not.
   std::optional<int> repeats_after() const { return recurrence_.period(); }
   /// An equilibrium of the field that the motion comes to.
   const std::optional<Eigen::VectorXd>& equilibrium() const { return equilibrium_; }

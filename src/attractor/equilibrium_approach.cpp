@@ -59,20 +59,21 @@ std::optional<VectorXd> reached_equilibrium(const HybridSystem& system, const Si
 }
 
 std::optional<VectorXd> approached_equilibrium(const HybridSystem& system, const IndexVector& index,
-                                               const std::vector<VectorXd>& states, const VectorXd& par,
-                                               const std::vector<Index>& ignorable) {
+                                               const std::vector<VectorXd>& states, std::size_t least,
+                                               const VectorXd& par, const std::vector<Index>& ignorable) {
   if (states.size() < least_states) return std::nullopt;
   const std::optional<VectorXd> rest = attracting_equilibrium(system, index.field, states.back(), par, ignorable);
   if (!rest || !is_on_surface(system, index.event, *rest, par)) return std::nullopt;
   const double nothing = there * (1.0 + rest->norm());
-  std::vector<double> distances;
+  std::vector<double> falling;  // the last distances, as long as each is smaller than the one before it, or nothing
   for (const VectorXd& state : states) {
     VectorXd d = state - *rest;
     for (const Index k : ignorable) d(k) = 0.0;
-    if (!distances.empty() && !(d.norm() < distances.back()) && !(d.norm() <= nothing)) return std::nullopt;
-    distances.push_back(d.norm());
+    if (!falling.empty() && !(d.norm() < falling.back()) && !(d.norm() <= nothing)) falling.clear();
+    falling.push_back(d.norm());
   }
-  return distances.back() <= nothing || fall_to_zero(distances) ? rest : std::nullopt;
+  if (falling.size() < std::max(least_states, least)) return std::nullopt;
+  return falling.back() <= nothing || fall_to_zero(falling) ? rest : std::nullopt;
 }
 
 }  // namespace tchat

@@ -18,8 +18,8 @@ using Eigen::VectorXd;
 /// and orbits that are solved to the usual tolerances make.
 constexpr double relative_rounding = 1e-5;
 constexpr double least_change = 1e-9;
-/// Of its mean slope on the way from the start of a segment, relative to its gradient: differences over a kink of H
-/// near by make a rate that is none, errors of the orbit a change that is none.
+/// The same of its mean slope on the way from the start of a segment, relative to its gradient. Near a kink of H the
+/// rate by differences is wrong, and where the orbit has errors the change is.
 constexpr double least_slope = 1e-3;
 
 std::vector<int> with_unfolding(std::vector<int> free, const ParameterLayout& layout, std::size_t segments) {
@@ -116,18 +116,20 @@ std::string ConservativeOrbitSystem::why_not_constant(const Orbit& x) const {
   return why;
 }
 
-/// At three nodes within the segment: at its ends H may have a kink. Both the rate and the change tell.
+/// At three nodes within the segment, as H may have a kink at its ends, and not at places that are alike in symmetric
+/// orbits. Told where both the rate and the change are larger than rounding.
 std::string ConservativeOrbitSystem::why_not_constant_on(int s, const Orbit& x) const {
   if (lasts_no_time(x, s, x.period())) return "";
   const int field = signature()[static_cast<std::size_t>(s)].field, last = x.shape.nodes_of(s) - 1;
   const Eigen::Map<const VectorXd> flow(flow_.data(), dimension()), gradient(gradient_.data(), dimension());
   const Eigen::Map<const VectorXd> start(x.start(s), dimension());
   const double at_start = value(x.start(s), x);
-  for (const int quarter : {1, 2, 3}) {
-    const double* const state = x.node(s, std::clamp(quarter * last / 4, 1, last - 1));
+  for (const int part : {2, 5, 8}) {
+    const double* const state = x.node(s, std::clamp(part * last / 11, 1, last - 1));
     system().value(FunctionKind::field, field, state, x.par.data(), flow_.data());
     const double here = conserved_.first(state, x.par.data(), gradient_.data(), unused_.data());
     const double rate = gradient.dot(flow);
+    if (!std::isfinite(rate)) continue;
     const double way = (Eigen::Map<const VectorXd>(state, dimension()) - start).norm();
     const bool is_rounding = std::abs(here - at_start) <= least_slope * gradient.norm() * way ||
                              std::abs(rate) <= relative_rounding * gradient.norm() * flow.norm() ||

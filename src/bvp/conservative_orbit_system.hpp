@@ -30,8 +30,8 @@ class ConservativeOrbitSystem final : public PeriodicOrbitSystem {
 
   int conserved_quantities() const override { return 1; }
   std::optional<double> unfolding(const Orbit& x) const override { return x.par(layout().unfolding(segments()) - 1); }
-  /// Where lambda is not zero, H changes along the orbit. Where it is, another function may be the conserved one: H_x f
-  /// is looked at within segments, H at their jumps.
+  /// Where lambda is not zero, H changes along the orbit. Where lambda is zero, another function may be the conserved
+  /// one: H and H_x f are looked at at three nodes of each segment, H at each jump.
   std::string why_no_solution(const Orbit& x) const override;
 
  protected:

@@ -1,5 +1,7 @@
 #include "continuation/stability_watch.hpp"
 
+#include <cstdlib>
+
 #include "special_points/label_evidence.hpp"
 
 namespace tchat {
@@ -38,7 +40,7 @@ std::optional<UnlabelledChange> StabilityWatch::add(const Point& point, bool is_
   std::optional<UnlabelledChange> result;
   if (change.count != 0)
     result = {{point.number, describe(change, point.multipliers.are_eigenvalues), known_->parameter, point.parameter},
-              is_through_one(change, point.multipliers.are_eigenvalues)};
+              std::abs(change.count) == 1 && is_through_one(change, point.multipliers.are_eigenvalues)};
   // A multiplier that takes several points to cross is compared with the last point at which its side was known.
   if (result || count_unstable(point.multipliers).undecided <= count_unstable(known_->multipliers).undecided)
     remember(point);

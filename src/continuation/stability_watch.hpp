@@ -9,7 +9,7 @@ namespace tchat {
 
 struct UnlabelledChange {
   LostPoint point;
-  bool is_through_one;  ///< of a real multiplier: on a curve that holds monitors that need not be a special point
+  bool is_through_one;  ///< of one real multiplier: on a curve that holds monitors that need not be a special point
 };
 
 class StabilityWatch {

@@ -346,10 +346,12 @@ std::vector<std::string> resegment(const ResegmentRequest& asked, std::ostream& 
   std::vector<Birth::InnerContact> lost;
   const LabelledOrbit source =
       without_contacts(request, with_section(request, labelled, system, problem, path), system, lost);
-  if (request.kind == ResegmentKind::grazing_curve && !source.settings.conserved.empty())
+  if (request.kind == ResegmentKind::grazing_curve && !source.settings.conserved.empty() &&
+      !is_overridden(request.overrides, "ICP"))
     throw UserError(fmt::format(
-        "{}: the orbit belongs to a family of CONSERVED = {}, and curves of grazing orbits have no conserved "
-        "function; --to impacting continues the family with the impact",
+        "{}: the orbit belongs to a family of CONSERVED = {}, and along a curve of grazing orbits two parameters that "
+        "change it vary, such as a damping and a drive: name them with ICP=[..., ...]; --to impacting continues the "
+        "family with the impact",
         path, source.settings.conserved));
   NewOrbit target = new_orbit(request, source, system);
   add_lost_contacts(lost, target);

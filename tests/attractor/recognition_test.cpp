@@ -229,16 +229,19 @@ TEST_CASE("an equilibrium that attracts, and motions that do not come to one") {
   };
   const std::vector<double> falling{1.0, 0.5, 0.2, 0.1};
   const ParameterVector sink = parameters({-1.0, -2.0, -1.0});
-  REQUIRE(approached_equilibrium(system, index, at_distances(falling), sink, {}).has_value());
-  CHECK(approached_equilibrium(system, index, at_distances(falling), sink, {})->norm() < 1e-12);
+  REQUIRE(approached_equilibrium(system, index, at_distances(falling), 4, sink, {}).has_value());
+  CHECK(approached_equilibrium(system, index, at_distances(falling), 4, sink, {})->norm() < 1e-12);
   const auto refused = [&](const HybridSystem& by, const std::vector<double>& distances, const ParameterVector& par) {
-    return !approached_equilibrium(by, index, at_distances(distances), par, {}).has_value();
+    return !approached_equilibrium(by, index, at_distances(distances), 4, par, {}).has_value();
   };
   CHECK(refused(system, falling, parameters({1.0, -2.0, -1.0})));
   CHECK(refused(system, {0.1, 0.2, 0.5, 1.0}, sink));
   CHECK(refused(system, {2.0, 1.5, 1.25, 1.125, 1.0625}, sink));                        // towards a cycle at distance 1
   CHECK(refused(system, {1.0, 1.0 - 1e-8, 1.0 - 2e-8, 1.0 - 3e-8, 1.0 - 4e-8}, sink));  // no more than errors
-  CHECK(refused(system_of<Diagonal>(), falling, sink));  // no state at this event can be near it
+  CHECK(refused(system, {0.1, 1.0, 0.5, 0.2}, sink));                                   // too few of them
+  CHECK_FALSE(refused(system, {0.1, 1.0, 0.5, 0.2, 0.1}, sink));
+  CHECK_FALSE(refused(system, {1.0, 2.0, 1e-9, 2e-9, 1e-9, 3e-9}, sink));  // at rest after a beat
+  CHECK(refused(system_of<Diagonal>(), falling, sink));                    // no state at this event can be near it
 }
 
 TEST_CASE("the signs of exponents, that along the flow left out") {

@@ -570,8 +570,7 @@ TEST_CASE("a function that changes along the orbits is not conserved, whatever l
   check_refused(workspace, "run walled -c r.family -s family -o new IRS=UZ1 ICP=[enrgy,period]", 2,
                 "enrgy is no parameter of problem Walled (it has PAR(1): c) and no monitor (period, energy, product, "
                 "max(x), ...); did you mean energy?");
-  check_refused(workspace, "resegment q.family GR1 --to grazing-curve -o curve", 2,
-                "curves of grazing orbits have no conserved function");
+  check_refused(workspace, "resegment q.family GR1 --to grazing-curve -o curve", 2, "name them with ICP=[..., ...]");
 }
 
 TEST_CASE("a family that shrinks to an equilibrium ends at no Hopf bifurcation") {
@@ -630,4 +629,9 @@ aux energy = (p^2+q^2+u^2+(w-u)^2)/2
       "run pair -c r.modes -s modes -o kept IRS=UZ1 CONSERVED= ICP=[d,f,energy] HOLD=[energy] UZR={} DS=0.01");
   CHECK(!contains(outcome.out, "may be missing"));
   CHECK(contains(workspace.read("d.kept"), "through +1; a curve that holds monitors need have none there"));
+  // With damping and drive the grazing orbit is one of a curve.
+  workspace.succeed("resegment q.family GR1 --to grazing-curve -o curve ICP=[d,f]");
+  workspace.succeed("run pair -q -c curve -s curve -o grazing NMX=10");
+  CHECK(pairs_of(workspace, "grazing", "d", "f").size() == 10);
+  workspace.succeed("verify grazing -p pair");
 }
