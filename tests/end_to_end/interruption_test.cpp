@@ -112,8 +112,10 @@ TEST_CASE("after SIGKILL the files load, an incomplete set never replaces a comp
     const std::string text = workspace.read("q.branch"), whole = whole_entries(text);
     const Outcome listed = workspace.tchat("labels q.branch");
     CHECK(listed.status == 0);
-    CHECK((listed.err.find("not complete and is left out") != std::string::npos) == (whole != text));
-    CHECK(listed.err.empty() == (whole == text));
+    // Blanks, as the first line of an entry begins with, are no part of one.
+    const bool is_cut = text.find_first_not_of(" \n", whole.size()) != std::string::npos;
+    CHECK((listed.err.find("not complete and is left out") != std::string::npos) == is_cut);
+    CHECK(listed.err.empty() == !is_cut);
     const auto solutions = read_solutions(whole);
     CHECK(solutions.size() > 3);
     // The p-file is behind the q-file by at most one solution.
