@@ -120,7 +120,8 @@ TEST_CASE("constants that do not fit the problem") {
   refused(2, "2 5 61", {"gc.impacting", "ICP", "PAR(5)", "alpha, omega, zeta, r"});
   refused(12, "5 3.2", {"gc.impacting", "UZR", "PAR(5)"});
   workspace.write("gc.named", "NDIM = 4\nICP = [omega]\nUZR = {nosuch: 3}\n");
-  check_refused(workspace.tchat("run linosc -c named -d impacting -o none"), {"gc.named:3: UZR (", "PAR(nosuch)"});
+  check_refused(workspace.tchat("run linosc -c named -d impacting -o none"),
+                {"gc.named:3: UZR (", "nosuch is no parameter"});
 }
 
 TEST_CASE("parameters beyond the problem's own that do no harm are warned of") {
@@ -151,9 +152,9 @@ TEST_CASE("overrides that cannot be") {
       {"PAR(5)=1", {"PAR(5)", "PAR(1) to PAR(4): alpha, omega, zeta, r"}},
       {"PAR(62)=1", {"PAR(62)", "61"}},
       {"alpha=3", {"'alpha'", "'PAR(alpha)=3'"}},
-      {"ICP=[nosuch]", {"ICP (", "PAR(nosuch)", "alpha, omega, zeta, r"}},
-      {"UZR={nosuch: 3}", {"UZR (", "PAR(nosuch)"}},
-      {"THL={nosuch: 3}", {"THL (", "PAR(nosuch)"}},
+      {"ICP=[nosuch]", {"ICP (", "nosuch is no parameter", "alpha, omega, zeta, r"}},
+      {"UZR={nosuch: 3}", {"UZR (", "nosuch is no parameter"}},
+      {"THL={nosuch: 3}", {"THL (", "nosuch is no parameter"}},
       {"GCFIND=[1,1]", {"GCFIND has 2", "GCHIND has 1"}},
       {"PAR(77)=1", {"PAR(77)"}},
       {"PAR(2=1", {"(2=1", "parenthesis"}},
