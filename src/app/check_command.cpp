@@ -10,18 +10,18 @@
 #include <string>
 #include <vector>
 
-#include "constants/constants_file.hpp"
-#include "constants/settings_type.hpp"
+#include "base/number.hpp"
+#include "base/user_error.hpp"
+#include "files/run_request.hpp"
 #include "files/writable_file.hpp"
-#include "formulas/translation.hpp"
-#include "hybrid/derivative_check.hpp"
-#include "hybrid/parameter_vector.hpp"
+#include "kinds/conservation_check.hpp"
+#include "model/derivative_check.hpp"
+#include "model/parameter_vector.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
-#include "setup/run_request.hpp"
-#include "text/number.hpp"
-#include "text/user_error.hpp"
-#include "verification/conservation_check.hpp"
+#include "plugin/translation.hpp"
+#include "settings/constants_file.hpp"
+#include "settings/settings_type.hpp"
 
 namespace tchat {
 

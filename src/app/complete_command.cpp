@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "app/commands.hpp"
-#include "constants/constants_table.hpp"
+#include "base/user_error.hpp"
 #include "files/run_file_names.hpp"
 #include "files/solution_file_reader.hpp"
 #include "plugin/source_names.hpp"
-#include "text/user_error.hpp"
+#include "settings/constants_table.hpp"
 
 namespace tchat {
 

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "app/run_command.hpp"
-#include "constants/constants_file.hpp"
-#include "constants/constants_guide.hpp"
-#include "constants/constants_writer.hpp"
-#include "setup/run_request.hpp"
-#include "setup/warnings.hpp"
+#include "base/warnings.hpp"
+#include "files/run_request.hpp"
+#include "settings/constants_file.hpp"
+#include "settings/constants_guide.hpp"
+#include "settings/constants_writer.hpp"
 
 namespace tchat {
 

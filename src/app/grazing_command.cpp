@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "app/problem_argument.hpp"
-#include "grazing/analyse_grazing.hpp"
+#include "maps/analyse_grazing.hpp"
 
 namespace tchat {
 

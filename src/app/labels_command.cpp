@@ -9,15 +9,15 @@
 #include <string>
 
 #include "app/table_format_options.hpp"
-#include "constants/constants_file.hpp"
+#include "base/user_error.hpp"
+#include "base/warnings.hpp"
+#include "files/label_table.hpp"
 #include "files/recorded_labels.hpp"
 #include "files/recorded_names.hpp"
+#include "files/run_request.hpp"
 #include "files/solution_file_reader.hpp"
-#include "setup/run_request.hpp"
-#include "setup/warnings.hpp"
-#include "tables/label_table.hpp"
-#include "tables/solution_tables.hpp"
-#include "text/user_error.hpp"
+#include "files/solution_tables.hpp"
+#include "settings/constants_file.hpp"
 
 namespace tchat {
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "new_problem/problem_template.hpp"
+#include "app/problem_template.hpp"
 
 namespace tchat {
 

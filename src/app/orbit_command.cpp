@@ -9,12 +9,12 @@
 #include <memory>
 #include <string>
 
-#include "constants/constant_value.hpp"
+#include "base/user_error.hpp"
+#include "base/warnings.hpp"
 #include "files/recorded_names.hpp"
 #include "files/solution_file_reader.hpp"
-#include "setup/warnings.hpp"
-#include "tables/solution_tables.hpp"
-#include "text/user_error.hpp"
+#include "files/solution_tables.hpp"
+#include "settings/constant_value.hpp"
 
 namespace tchat {
 

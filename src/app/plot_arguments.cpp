@@ -8,7 +8,9 @@
 #include <cctype>
 #include <filesystem>
 
-#include "constants/constant_value.hpp"
+#include "base/number.hpp"
+#include "base/user_error.hpp"
+#include "base/words.hpp"
 #include "files/run_file_kind.hpp"
 #include "files/trajectory_rows.hpp"
 #include "plot/data_file.hpp"
@@ -16,9 +18,7 @@
 #include "plot/picture_styles.hpp"
 #include "plot/sweep_layer.hpp"
 #include "plot/trajectory_file.hpp"
-#include "text/number.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
+#include "settings/constant_value.hpp"
 
 namespace tchat {
 

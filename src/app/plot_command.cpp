@@ -11,10 +11,10 @@
 
 #include "app/plot_arguments.hpp"
 #include "app/plot_pictures.hpp"
+#include "base/user_error.hpp"
+#include "base/warnings.hpp"
 #include "plot/picture_format.hpp"
 #include "plot/picture_output.hpp"
-#include "setup/warnings.hpp"
-#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -8,10 +8,14 @@
 #include <memory>
 #include <optional>
 
-#include "constants/constant_value.hpp"
+#include "base/number.hpp"
+#include "base/user_error.hpp"
+#include "base/words.hpp"
 #include "files/diagnostics_file_reader.hpp"
+#include "files/orbit_stability.hpp"
 #include "files/run_file_names.hpp"
 #include "files/solution_file_reader.hpp"
+#include "files/torus_trace.hpp"
 #include "plot/branch_figure.hpp"
 #include "plot/data_file.hpp"
 #include "plot/multiplier_figure.hpp"
@@ -19,13 +23,9 @@
 #include "plot/problem_finder.hpp"
 #include "plot/sweep_layer.hpp"
 #include "plot/trajectory_file.hpp"
-#include "problem_type/family.hpp"
-#include "problem_type/problem_type.hpp"
-#include "text/number.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
-#include "traces/orbit_stability.hpp"
-#include "traces/torus_trace.hpp"
+#include "settings/constant_value.hpp"
+#include "settings/family.hpp"
+#include "settings/problem_type.hpp"
 
 namespace tchat {
 

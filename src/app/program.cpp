@@ -35,8 +35,8 @@
 #include "app/usage_error.hpp"
 #include "app/verify_command.hpp"
 #include "app/version_text.hpp"
-#include "text/printable.hpp"
-#include "text/user_error.hpp"
+#include "base/printable.hpp"
+#include "base/user_error.hpp"
 
 namespace tchat {
 

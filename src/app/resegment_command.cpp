@@ -8,11 +8,11 @@
 #include <memory>
 #include <sstream>
 
-#include "constants/constant_value.hpp"
+#include "base/user_error.hpp"
+#include "base/warnings.hpp"
+#include "base/words.hpp"
 #include "resegment/resegment.hpp"
-#include "setup/warnings.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
+#include "settings/constant_value.hpp"
 
 namespace tchat {
 

@@ -9,9 +9,9 @@
 #include "app/interruption.hpp"
 #include "app/problem_argument.hpp"
 #include "app/simulation_options.hpp"
+#include "base/user_error.hpp"
+#include "maps/simulate_torus.hpp"
 #include "simulate/simulate_problem.hpp"
-#include "text/user_error.hpp"
-#include "torus_simulation/simulate_torus.hpp"
 
 namespace tchat {
 

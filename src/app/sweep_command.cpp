@@ -13,9 +13,9 @@
 #include "app/interruption.hpp"
 #include "app/problem_argument.hpp"
 #include "app/simulation_options.hpp"
-#include "map_sweep/map_sweep_problem.hpp"
-#include "sweep/sweep_problem.hpp"
-#include "text/words.hpp"
+#include "base/words.hpp"
+#include "maps/map_sweep_problem.hpp"
+#include "simulate/sweep_problem.hpp"
 
 namespace tchat {
 

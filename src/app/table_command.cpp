@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "app/table_format_options.hpp"
+#include "base/user_error.hpp"
+#include "base/warnings.hpp"
 #include "files/branch_file.hpp"
+#include "files/branch_table.hpp"
+#include "files/point_type_table.hpp"
 #include "files/run_file_kind.hpp"
 #include "files/run_file_names.hpp"
 #include "plot/quantity_table.hpp"
-#include "setup/warnings.hpp"
-#include "tables/branch_table.hpp"
-#include "tables/point_type_table.hpp"
-#include "text/user_error.hpp"
 
 namespace tchat {
 

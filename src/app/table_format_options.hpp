@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "tables/table_writer.hpp"
+#include "files/table_writer.hpp"
 
 namespace tchat {
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "app/commands.hpp"
-#include "constants/constant_value.hpp"
-#include "text/near_words.hpp"
-#include "text/words.hpp"
+#include "base/near_words.hpp"
+#include "base/words.hpp"
+#include "settings/constant_value.hpp"
 
 namespace tchat {
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <sstream>
 
-#include "verification/verify_solutions.hpp"
+#include "kinds/verify_solutions.hpp"
 
 namespace tchat {
 

@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "bvp/admissibility.hpp"
 #include "continuation/newton_result.hpp"
 #include "continuation/path_point.hpp"
 #include "continuation/point_data.hpp"
-#include "special_points/test_function.hpp"
+#include "orbit/admissibility.hpp"
 #include "stability/multipliers.hpp"
+#include "stability/test_function.hpp"
 
 namespace tchat {
 

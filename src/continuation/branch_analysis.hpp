@@ -1,13 +1,13 @@
 /// What a branch of solutions of one family needs while it is computed: the multipliers of a point, where the branch
 /// ends of itself, what its last point tends to. A DefiningSystem makes the analysis of its own kind of solutions
-/// (make_analysis); the classes are in src/families.
+/// (make_analysis); the classes are in src/kinds.
 #pragma once
 
 #include <optional>
 #include <string>
 
 #include "continuation/orbit_trend.hpp"
-#include "special_points/test_function.hpp"
+#include "stability/test_function.hpp"
 
 namespace tchat {
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
-#include "bvp/condensed_system.hpp"
-#include "bvp/orbit_accuracy.hpp"
 #include "continuation/solution_measure.hpp"
+#include "orbit/condensed_system.hpp"
+#include "orbit/orbit_accuracy.hpp"
 
 namespace tchat {
 

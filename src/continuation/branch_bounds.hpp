@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "bvp/collocation_rule.hpp"
-#include "bvp/orbit.hpp"
-#include "special_points/test_function.hpp"
+#include "orbit/collocation_rule.hpp"
+#include "orbit/orbit.hpp"
+#include "stability/test_function.hpp"
 
 namespace tchat {
 

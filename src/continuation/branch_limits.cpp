@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bvp/no_duration.hpp"
 #include "continuation/newton_chord.hpp"
-#include "linear_algebra/dense_matrix.hpp"
-#include "linear_algebra/stack_array.hpp"
-#include "special_points/label_evidence.hpp"
+#include "linear/dense_matrix.hpp"
+#include "linear/stack_array.hpp"
+#include "orbit/no_duration.hpp"
+#include "stability/label_evidence.hpp"
 
 namespace tchat {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bvp/mesh_adaptation.hpp"
 #include "continuation/path_follower.hpp"
 #include "continuation/solution_measure.hpp"
+#include "orbit/mesh_adaptation.hpp"
 
 namespace tchat {
 

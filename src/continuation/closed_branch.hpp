@@ -12,8 +12,8 @@
 
 #include <optional>
 
-#include "bvp/mesh_adaptation.hpp"
 #include "continuation/path_point.hpp"
+#include "orbit/mesh_adaptation.hpp"
 
 namespace tchat {
 

@@ -7,12 +7,12 @@
 #include <optional>
 #include <utility>
 
-#include "bvp/evaluation_failure.hpp"
-#include "bvp/mesh_adaptation.hpp"
-#include "bvp/orbit_accuracy.hpp"
 #include "continuation/branch_limits.hpp"
-#include "problem_type/family.hpp"
-#include "special_points/bifurcation_tests.hpp"
+#include "orbit/evaluation_failure.hpp"
+#include "orbit/mesh_adaptation.hpp"
+#include "orbit/orbit_accuracy.hpp"
+#include "settings/family.hpp"
+#include "stability/bifurcation_tests.hpp"
 
 namespace tchat {
 

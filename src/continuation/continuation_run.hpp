@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 
-#include "bvp/mesh_adaptation.hpp"
 #include "continuation/branch.hpp"
 #include "continuation/branch_analysis.hpp"
 #include "continuation/branch_bounds.hpp"
@@ -15,6 +14,7 @@
 #include "continuation/special_point_search.hpp"
 #include "continuation/stability_watch.hpp"
 #include "continuation/step_size.hpp"
+#include "orbit/mesh_adaptation.hpp"
 
 namespace tchat {
 

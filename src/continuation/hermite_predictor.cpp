@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "continuation/path_follower.hpp"
-#include "linear_algebra/array_kernel.hpp"
+#include "linear/array_kernel.hpp"
 
 namespace tchat {
 

@@ -6,9 +6,9 @@
 #include <limits>
 #include <optional>
 
-#include "bvp/nearby_equilibrium.hpp"
-#include "linear_algebra/dense_matrix.hpp"
-#include "special_points/bifurcation_tests.hpp"
+#include "linear/dense_matrix.hpp"
+#include "orbit/nearby_equilibrium.hpp"
+#include "stability/bifurcation_tests.hpp"
 
 namespace tchat {
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "bvp/defining_system.hpp"
 #include "continuation/orbit_trend.hpp"
+#include "orbit/defining_system.hpp"
 
 namespace tchat {
 

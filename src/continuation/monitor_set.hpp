@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "bvp/monitor.hpp"
+#include "orbit/monitor.hpp"
 #include "stability/multipliers.hpp"
 
 namespace tchat {

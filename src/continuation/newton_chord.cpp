@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "linear_algebra/array_kernel.hpp"
+#include "linear/array_kernel.hpp"
 
 namespace tchat {
 

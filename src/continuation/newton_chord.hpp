@@ -13,9 +13,9 @@
 
 #include <vector>
 
-#include "bvp/bordered_problem.hpp"
 #include "continuation/newton_result.hpp"
-#include "linear_algebra/array_kernel.hpp"
+#include "linear/array_kernel.hpp"
+#include "orbit/bordered_problem.hpp"
 
 namespace tchat {
 

@@ -1,13 +1,13 @@
 /// What becomes of the orbit along a branch: does it shrink to a point, or a torus to a periodic orbit, does its period
 /// grow without bound?
 ///
-/// Of the `orbits` returns of a torus (bvp/torus_system.hpp) the deviation of a node is that from its mean over the
+/// Of the `orbits` returns of a torus (orbit/torus_system.hpp) the deviation of a node is that from its mean over the
 /// returns: it vanishes on a periodic orbit, run through so many times.
 #pragma once
 
 #include <optional>
 
-#include "bvp/orbit.hpp"
+#include "orbit/orbit.hpp"
 
 namespace tchat {
 

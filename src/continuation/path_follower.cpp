@@ -5,8 +5,8 @@
 #include <cassert>
 #include <cmath>
 
-#include "bvp/mesh_adaptation.hpp"
-#include "linear_algebra/array_kernel.hpp"
+#include "linear/array_kernel.hpp"
+#include "orbit/mesh_adaptation.hpp"
 
 namespace tchat {
 

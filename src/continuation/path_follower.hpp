@@ -11,12 +11,12 @@
 
 #include <memory>
 
-#include "bvp/mesh_adaptation.hpp"
-#include "bvp/weighted_norm.hpp"
 #include "continuation/monitor_set.hpp"
 #include "continuation/newton_chord.hpp"
 #include "continuation/path_point.hpp"
 #include "continuation/predictor.hpp"
+#include "orbit/mesh_adaptation.hpp"
+#include "orbit/weighted_norm.hpp"
 
 namespace tchat {
 

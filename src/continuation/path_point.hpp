@@ -1,9 +1,9 @@
 /// A point of a branch, with what the next step from it needs.
 #pragma once
 
-#include "bvp/orbit.hpp"
-#include "bvp/orbit_condition.hpp"
 #include "continuation/path_trail.hpp"
+#include "orbit/orbit.hpp"
+#include "orbit/orbit_condition.hpp"
 
 namespace tchat {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
-#include "bvp/mesh_adaptation.hpp"
 #include "continuation/path_follower.hpp"
+#include "orbit/mesh_adaptation.hpp"
 
 namespace tchat {
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "bvp/orbit.hpp"
+#include "orbit/orbit.hpp"
 
 namespace tchat {
 

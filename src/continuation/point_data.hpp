@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "bvp/event_minima.hpp"
 #include "continuation/path_point.hpp"
-#include "special_points/test_function.hpp"
+#include "orbit/event_minima.hpp"
 #include "stability/multipliers.hpp"
+#include "stability/test_function.hpp"
 
 namespace tchat {
 

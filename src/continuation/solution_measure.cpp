@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "bvp/weighted_norm.hpp"
-#include "linear_algebra/array_kernel.hpp"
+#include "linear/array_kernel.hpp"
+#include "orbit/weighted_norm.hpp"
 
 namespace tchat {
 

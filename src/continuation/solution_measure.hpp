@@ -1,8 +1,8 @@
 /// The printed numbers of an orbit: norms, maxima and integrals over the whole period, whatever its cuts into segments.
 #pragma once
 
-#include "bvp/collocation_rule.hpp"
-#include "bvp/orbit.hpp"
+#include "orbit/collocation_rule.hpp"
+#include "orbit/orbit.hpp"
 
 namespace tchat {
 

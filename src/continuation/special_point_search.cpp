@@ -9,17 +9,17 @@
 #include <limits>
 #include <span>
 
-#include "bvp/critical_multiplier.hpp"
-#include "bvp/defining_system.hpp"
-#include "bvp/discretisation_error.hpp"
-#include "bvp/equilibrium_system.hpp"
-#include "bvp/no_duration.hpp"
-#include "bvp/transversality.hpp"
 #include "continuation/path_follower.hpp"
 #include "continuation/value_trend.hpp"
-#include "special_points/bifurcation_tests.hpp"
-#include "special_points/sliding_bifurcation.hpp"
+#include "orbit/critical_multiplier.hpp"
+#include "orbit/defining_system.hpp"
+#include "orbit/discretisation_error.hpp"
+#include "orbit/equilibrium_system.hpp"
+#include "orbit/no_duration.hpp"
+#include "orbit/transversality.hpp"
+#include "stability/bifurcation_tests.hpp"
 #include "stability/equilibrium_eigenvalues.hpp"
+#include "stability/sliding_bifurcation.hpp"
 #include "stability/torus_multipliers.hpp"
 
 namespace tchat {

@@ -10,7 +10,7 @@
 #include "continuation/branch_point_bracket.hpp"
 #include "continuation/newton_result.hpp"
 #include "continuation/point_data.hpp"
-#include "special_points/locator.hpp"
+#include "stability/locator.hpp"
 
 namespace tchat {
 

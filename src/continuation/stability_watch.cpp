@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "special_points/label_evidence.hpp"
+#include "stability/label_evidence.hpp"
 
 namespace tchat {
 

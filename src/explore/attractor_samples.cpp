@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "text/number.hpp"
-#include "text/words.hpp"
+#include "base/number.hpp"
+#include "base/words.hpp"
 
 namespace tchat {
 

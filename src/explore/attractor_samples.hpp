@@ -9,8 +9,8 @@
 
 #include "explore/orbit_catalogue.hpp"
 #include "files/point_columns.hpp"
-#include "hybrid/hybrid_system.hpp"
-#include "sweep/sweep_file.hpp"
+#include "model/hybrid_system.hpp"
+#include "simulate/sweep_file.hpp"
 
 namespace tchat {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "files/labelled_solution.hpp"
-#include "hybrid/hybrid_system.hpp"
+#include "model/hybrid_system.hpp"
 
 namespace tchat {
 

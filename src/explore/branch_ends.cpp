@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "text/words.hpp"
+#include "base/words.hpp"
 
 namespace tchat {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <vector>
 
+#include "files/parameter_values.hpp"
 #include "files/solution_file_reader.hpp"
-#include "hybrid/parameter_vector.hpp"
-#include "setup/parameter_values.hpp"
-#include "simulation/recurrence.hpp"
+#include "model/parameter_vector.hpp"
+#include "motion/recurrence.hpp"
 
 namespace tchat {
 

@@ -14,9 +14,9 @@
 #include <filesystem>
 #include <optional>
 
+#include "base/text_file.hpp"
+#include "base/user_error.hpp"
 #include "files/replaced_file.hpp"
-#include "text/text_file.hpp"
-#include "text/user_error.hpp"
 
 namespace tchat {
 

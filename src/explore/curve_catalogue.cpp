@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "explore/point_interpolation.hpp"
-#include "problem_type/point_type.hpp"
-#include "problem_type/problem_type.hpp"
+#include "settings/point_type.hpp"
+#include "settings/problem_type.hpp"
 
 namespace tchat {
 

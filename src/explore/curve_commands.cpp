@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/user_error.hpp"
+#include "base/words.hpp"
 #include "plugin/plugin_build.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
 
 namespace tchat {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "explore/exploration_commands.hpp"
-#include "hybrid/parameter_vector.hpp"
+#include "model/parameter_vector.hpp"
 
 namespace tchat {
 

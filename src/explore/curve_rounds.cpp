@@ -8,16 +8,16 @@
 #include <cmath>
 #include <limits>
 
-#include "constants/constants_file.hpp"
+#include "base/words.hpp"
 #include "explore/admissible_points.hpp"
 #include "explore/branch_ends.hpp"
 #include "files/solution_file_reader.hpp"
-#include "problem_type/point_type.hpp"
-#include "problem_type/problem_type.hpp"
+#include "plugin/named_parameters.hpp"
 #include "run/codimension_two_switch.hpp"
 #include "run/next_command.hpp"
-#include "setup/named_parameters.hpp"
-#include "text/words.hpp"
+#include "settings/constants_file.hpp"
+#include "settings/point_type.hpp"
+#include "settings/problem_type.hpp"
 
 namespace tchat {
 

@@ -9,9 +9,9 @@
 #include <set>
 #include <utility>
 
+#include "base/words.hpp"
 #include "explore/branch_ends.hpp"
 #include "files/point_file_reader.hpp"
-#include "text/words.hpp"
 
 namespace tchat {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "explore/explored_diagram.hpp"
-#include "sweep/sweep_file.hpp"
+#include "simulate/sweep_file.hpp"
 
 namespace tchat {
 

@@ -6,13 +6,13 @@
 #include <filesystem>
 #include <string_view>
 
-#include "bvp/quantity.hpp"
+#include "base/number.hpp"
+#include "base/user_error.hpp"
+#include "base/words.hpp"
+#include "orbit/quantity.hpp"
 #include "plugin/plugin_build.hpp"
-#include "problem_type/problem_type.hpp"
-#include "sweep/sweep_file.hpp"
-#include "text/number.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
+#include "settings/problem_type.hpp"
+#include "simulate/sweep_file.hpp"
 
 namespace tchat {
 

@@ -10,7 +10,7 @@
 #include "explore/command_job.hpp"
 #include "explore/explore_request.hpp"
 #include "explore/swept_range.hpp"
-#include "hybrid/hybrid_system.hpp"
+#include "model/hybrid_system.hpp"
 
 namespace tchat {
 

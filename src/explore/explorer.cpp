@@ -10,8 +10,10 @@
 #include <optional>
 #include <set>
 
-#include "constants/constants_file.hpp"
-#include "constants/settings_type.hpp"
+#include "base/number.hpp"
+#include "base/user_error.hpp"
+#include "base/warnings.hpp"
+#include "base/words.hpp"
 #include "explore/admissible_points.hpp"
 #include "explore/attractor_samples.hpp"
 #include "explore/boundary_equilibrium.hpp"
@@ -24,17 +26,15 @@
 #include "explore/exploration_commands.hpp"
 #include "explore/exploration_makefile.hpp"
 #include "explore/orbit_catalogue.hpp"
+#include "files/parameter_values.hpp"
 #include "files/replaced_file.hpp"
 #include "files/solution_file_reader.hpp"
-#include "problem_type/point_type.hpp"
+#include "plugin/named_parameters.hpp"
 #include "run/next_command.hpp"
-#include "setup/named_parameters.hpp"
-#include "setup/parameter_values.hpp"
-#include "setup/warnings.hpp"
+#include "settings/constants_file.hpp"
+#include "settings/point_type.hpp"
+#include "settings/settings_type.hpp"
 #include "simulate/loaded_problem.hpp"
-#include "text/number.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
 
 namespace tchat {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tables/table_format.hpp"
+#include "files/table_format.hpp"
 
 namespace tchat {
 

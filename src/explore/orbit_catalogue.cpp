@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "explore/point_interpolation.hpp"
-#include "problem_type/problem_type.hpp"
+#include "settings/problem_type.hpp"
 
 namespace tchat {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "problem_type/problem_type.hpp"
+#include "settings/problem_type.hpp"
 
 namespace tchat {
 

@@ -5,11 +5,11 @@
 #include <optional>
 #include <vector>
 
-#include "setup/problem_setup.hpp"
-#include "sweep/sweep_grid.hpp"
-#include "text/number.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
+#include "base/number.hpp"
+#include "base/user_error.hpp"
+#include "base/words.hpp"
+#include "plugin/named_parameters.hpp"
+#include "simulate/sweep_grid.hpp"
 
 namespace tchat {
 

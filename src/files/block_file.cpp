@@ -9,8 +9,8 @@
 #include <cstring>
 #include <utility>
 
+#include "base/user_error.hpp"
 #include "files/disk_sync.hpp"
-#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -10,11 +10,11 @@
 #include <functional>
 #include <optional>
 
+#include "base/user_error.hpp"
 #include "files/labelled_solution.hpp"
 #include "files/run_file_names.hpp"
 #include "files/solution_file_reader.hpp"
-#include "problem_type/point_type.hpp"
-#include "text/user_error.hpp"
+#include "settings/point_type.hpp"
 
 namespace tchat {
 

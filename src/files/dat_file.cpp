@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constants/constant_value.hpp"
+#include "base/number.hpp"
+#include "base/text_file.hpp"
+#include "base/user_error.hpp"
+#include "base/words.hpp"
 #include "files/orbit_parts.hpp"
-#include "hybrid/parameter_layout.hpp"
-#include "text/number.hpp"
-#include "text/text_file.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
+#include "model/parameter_layout.hpp"
+#include "settings/constant_value.hpp"
 
 namespace tchat {
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <optional>
 
-#include "constants/constant_value.hpp"
-#include "text/number.hpp"
-#include "text/text_file.hpp"
-#include "text/words.hpp"
+#include "base/number.hpp"
+#include "base/text_file.hpp"
+#include "base/words.hpp"
+#include "settings/constant_value.hpp"
 
 namespace tchat {
 

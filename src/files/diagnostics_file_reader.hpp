@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "problem_type/normal_form_note.hpp"
+#include "settings/normal_form_note.hpp"
 
 namespace tchat {
 

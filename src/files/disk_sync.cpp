@@ -8,7 +8,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "text/user_error.hpp"
+#include "base/user_error.hpp"
 
 namespace tchat {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "hybrid/parameter_layout.hpp"
-#include "problem_type/point_type.hpp"
-#include "problem_type/problem_id.hpp"
+#include "model/parameter_layout.hpp"
+#include "settings/point_type.hpp"
+#include "settings/problem_id.hpp"
 
 namespace tchat {
 

@@ -5,7 +5,7 @@
 #include <cerrno>
 #include <filesystem>
 
-#include "text/user_error.hpp"
+#include "base/user_error.hpp"
 
 namespace tchat {
 

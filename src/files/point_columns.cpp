@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "constants/settings_type.hpp"
-#include "problem_type/family.hpp"
+#include "settings/family.hpp"
+#include "settings/settings_type.hpp"
 
 namespace tchat {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "constants/run_settings.hpp"
-#include "hybrid/hybrid_system.hpp"
+#include "model/hybrid_system.hpp"
+#include "settings/run_settings.hpp"
 
 namespace tchat {
 

@@ -7,9 +7,9 @@
 
 #include "files/labelled_solution.hpp"
 #include "files/number_format.hpp"
-#include "problem_type/family.hpp"
-#include "problem_type/point_type.hpp"
-#include "problem_type/problem_type.hpp"
+#include "settings/family.hpp"
+#include "settings/point_type.hpp"
+#include "settings/problem_type.hpp"
 
 namespace tchat {
 

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "constants/run_settings.hpp"
 #include "files/labelled_solution.hpp"
 #include "files/point_columns.hpp"
+#include "settings/run_settings.hpp"
 
 namespace tchat {
 

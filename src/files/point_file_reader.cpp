@@ -9,12 +9,12 @@
 #include <optional>
 #include <utility>
 
-#include "constants/constant_value.hpp"
-#include "problem_type/problem_type.hpp"
-#include "text/number.hpp"
-#include "text/text_file.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
+#include "base/number.hpp"
+#include "base/text_file.hpp"
+#include "base/user_error.hpp"
+#include "base/words.hpp"
+#include "settings/constant_value.hpp"
+#include "settings/problem_type.hpp"
 
 namespace tchat {
 

@@ -18,7 +18,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hybrid/parameter_layout.hpp"
+#include "model/parameter_layout.hpp"
 
 namespace tchat {
 

@@ -7,7 +7,7 @@
 
 #include "files/labelled_solution.hpp"
 #include "files/number_format.hpp"
-#include "problem_type/point_type.hpp"
+#include "settings/point_type.hpp"
 
 namespace tchat {
 

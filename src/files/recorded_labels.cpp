@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <string_view>
 
+#include "base/user_error.hpp"
 #include "files/diagnostics_file_reader.hpp"
 #include "files/point_file_reader.hpp"
 #include "files/run_file_names.hpp"
-#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "files/solution_file_reader.hpp"
-#include "problem_type/normal_form_note.hpp"
+#include "settings/normal_form_note.hpp"
 
 namespace tchat {
 

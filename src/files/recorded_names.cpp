@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <map>
 
+#include "base/user_error.hpp"
 #include "files/point_file_reader.hpp"
 #include "files/run_file_names.hpp"
-#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "constants/constant_value.hpp"
+#include "base/number.hpp"
+#include "base/text_file.hpp"
+#include "base/words.hpp"
 #include "files/point_file_reader.hpp"
-#include "text/number.hpp"
-#include "text/text_file.hpp"
-#include "text/words.hpp"
+#include "settings/constant_value.hpp"
 
 namespace tchat {
 

@@ -7,15 +7,15 @@
 #include <utility>
 #include <vector>
 
+#include "base/text_file.hpp"
+#include "base/user_error.hpp"
+#include "base/words.hpp"
 #include "files/diagnostics_file.hpp"
 #include "files/disk_sync.hpp"
 #include "files/output_lock.hpp"
 #include "files/solution_file_reader.hpp"
 #include "files/temporary_file.hpp"
 #include "files/writable_file.hpp"
-#include "text/text_file.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
 
 namespace tchat {
 

@@ -7,7 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "constants/constant_value.hpp"
+#include "base/number.hpp"
+#include "base/text_file.hpp"
+#include "base/user_error.hpp"
+#include "base/words.hpp"
 #include "files/diagnostics_file.hpp"
 #include "files/diagnostics_file_reader.hpp"
 #include "files/disk_sync.hpp"
@@ -15,10 +18,7 @@
 #include "files/solution_labels.hpp"
 #include "files/temporary_file.hpp"
 #include "files/writable_file.hpp"
-#include "text/number.hpp"
-#include "text/text_file.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
+#include "settings/constant_value.hpp"
 
 namespace tchat {
 

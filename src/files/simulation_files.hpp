@@ -21,9 +21,9 @@
 #include <string>
 
 #include "files/replaced_file.hpp"
-#include "hybrid/hybrid_system.hpp"
+#include "model/hybrid_system.hpp"
+#include "motion/hybrid_simulation.hpp"
 #include "plugin/file_lock.hpp"
-#include "simulation/hybrid_simulation.hpp"
 
 namespace tchat {
 

@@ -9,9 +9,9 @@
 #include "files/labelled_solution.hpp"
 #include "files/number_format.hpp"
 #include "files/solution_identifier.hpp"
-#include "hybrid/parameter_layout.hpp"
-#include "problem_type/family.hpp"
-#include "problem_type/point_type.hpp"
+#include "model/parameter_layout.hpp"
+#include "settings/family.hpp"
+#include "settings/point_type.hpp"
 
 namespace tchat {
 

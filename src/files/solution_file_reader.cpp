@@ -9,16 +9,16 @@
 #include <map>
 #include <optional>
 
-#include "constants/constant_value.hpp"
+#include "base/number.hpp"
+#include "base/text_file.hpp"
+#include "base/user_error.hpp"
+#include "base/words.hpp"
 #include "files/run_file_names.hpp"
 #include "files/solution_identifier.hpp"
-#include "hybrid/parameter_vector.hpp"
-#include "problem_type/family.hpp"
-#include "problem_type/problem_type.hpp"
-#include "text/number.hpp"
-#include "text/text_file.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
+#include "model/parameter_vector.hpp"
+#include "settings/constant_value.hpp"
+#include "settings/family.hpp"
+#include "settings/problem_type.hpp"
 
 namespace tchat {
 

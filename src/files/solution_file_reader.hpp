@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
-#include "constants/run_settings.hpp"
 #include "files/labelled_solution.hpp"
-#include "problem_type/point_type.hpp"
+#include "settings/point_type.hpp"
+#include "settings/run_settings.hpp"
 
 namespace tchat {
 

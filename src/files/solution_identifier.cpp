@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "text/user_error.hpp"
+#include "base/user_error.hpp"
 
 namespace tchat {
 

@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "hybrid/parameter_layout.hpp"
-#include "problem_type/problem_type.hpp"
+#include "model/parameter_layout.hpp"
+#include "settings/problem_type.hpp"
 
 namespace tchat {
 

@@ -15,8 +15,8 @@
 #include <random>
 #include <utility>
 
+#include "base/user_error.hpp"
 #include "files/disk_sync.hpp"
-#include "text/user_error.hpp"
 
 namespace tchat {
 

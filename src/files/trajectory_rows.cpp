@@ -5,11 +5,11 @@
 #include <optional>
 #include <sstream>
 
-#include "constants/constant_value.hpp"
-#include "text/number.hpp"
-#include "text/text_file.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
+#include "base/number.hpp"
+#include "base/text_file.hpp"
+#include "base/user_error.hpp"
+#include "base/words.hpp"
+#include "settings/constant_value.hpp"
 
 namespace tchat {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "hybrid/index_vector.hpp"
+#include "model/index_vector.hpp"
 
 namespace tchat {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "text/user_error.hpp"
+#include "base/user_error.hpp"
 
 namespace tchat {
 

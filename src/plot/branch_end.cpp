@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <vector>
 
-#include "constants/constants_file.hpp"
+#include "base/user_error.hpp"
 #include "files/labelled_solution.hpp"
 #include "files/run_file_names.hpp"
-#include "problem_type/point_type.hpp"
-#include "text/user_error.hpp"
+#include "settings/constants_file.hpp"
+#include "settings/point_type.hpp"
 
 namespace tchat {
 

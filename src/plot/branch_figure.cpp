@@ -7,14 +7,14 @@
 #include <set>
 #include <utility>
 
+#include "base/user_error.hpp"
 #include "plot/axis_scale.hpp"
 #include "plot/branch_columns.hpp"
 #include "plot/branch_end.hpp"
 #include "plot/branch_quantity.hpp"
 #include "plot/smooth_line.hpp"
-#include "problem_type/family.hpp"
-#include "problem_type/problem_type.hpp"
-#include "text/user_error.hpp"
+#include "settings/family.hpp"
+#include "settings/problem_type.hpp"
 
 namespace tchat {
 

@@ -8,12 +8,12 @@
 #include <limits>
 #include <optional>
 
-#include "constants/constant_value.hpp"
+#include "base/number.hpp"
+#include "base/user_error.hpp"
+#include "base/words.hpp"
 #include "plot/branch_columns.hpp"
 #include "plot/column_expression.hpp"
-#include "text/number.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
+#include "settings/constant_value.hpp"
 
 namespace tchat {
 

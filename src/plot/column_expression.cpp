@@ -9,12 +9,12 @@
 #include <limits>
 #include <sstream>
 
-#include "constants/constant_value.hpp"
+#include "base/number.hpp"
+#include "base/user_error.hpp"
+#include "base/words.hpp"
 #include "plot/gnuplot.hpp"
 #include "plot/gnuplot_script.hpp"
-#include "text/number.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
+#include "settings/constant_value.hpp"
 
 namespace tchat {
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <sstream>
 
-#include "hybrid/event_at.hpp"
+#include "base/user_error.hpp"
+#include "model/event_at.hpp"
 #include "plot/gnuplot.hpp"
-#include "text/user_error.hpp"
 
 namespace tchat {
 

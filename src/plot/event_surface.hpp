@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "hybrid/hybrid_system.hpp"
+#include "files/orbit_trace.hpp"
+#include "model/hybrid_system.hpp"
 #include "plot/figure.hpp"
-#include "traces/orbit_trace.hpp"
 
 namespace tchat {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "plot/label_text.hpp"
-#include "problem_type/point_type.hpp"
+#include "settings/point_type.hpp"
 
 namespace tchat {
 

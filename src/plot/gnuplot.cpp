@@ -12,8 +12,8 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "text/user_error.hpp"
-#include "text/words.hpp"
+#include "base/user_error.hpp"
+#include "base/words.hpp"
 
 namespace tchat {
 

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "constants/constant_value.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
+#include "base/user_error.hpp"
+#include "base/words.hpp"
+#include "settings/constant_value.hpp"
 
 namespace tchat {
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/user_error.hpp"
+#include "files/orbit_stability.hpp"
 #include "plot/picture_styles.hpp"
-#include "text/user_error.hpp"
-#include "traces/orbit_stability.hpp"
 
 namespace tchat {
 

@@ -9,13 +9,13 @@
 #include <limits>
 #include <set>
 
-#include "constants/constant_value.hpp"
-#include "hybrid/parameter_vector.hpp"
+#include "base/user_error.hpp"
+#include "base/words.hpp"
+#include "model/parameter_vector.hpp"
 #include "plot/colour_scale.hpp"
 #include "plot/event_surface.hpp"
 #include "plot/picture_styles.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
+#include "settings/constant_value.hpp"
 
 namespace tchat {
 

@@ -14,10 +14,10 @@
 #include "plot/page_json.hpp"
 #include "plot/page_orbits.hpp"
 #include "plot/restart_command.hpp"
-#include "problem_type/family.hpp"
-#include "problem_type/normal_form_note.hpp"
-#include "problem_type/point_type.hpp"
-#include "problem_type/problem_type.hpp"
+#include "settings/family.hpp"
+#include "settings/normal_form_note.hpp"
+#include "settings/point_type.hpp"
+#include "settings/problem_type.hpp"
 
 namespace tchat {
 

@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
+#include "base/user_error.hpp"
 #include "plot/page_json.hpp"
 #include "plot/thinned_points.hpp"
-#include "text/user_error.hpp"
 
 namespace tchat {
 

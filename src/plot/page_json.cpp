@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
+#include "files/table_format.hpp"
 #include "plot/axis_scale.hpp"
-#include "tables/table_format.hpp"
 
 namespace tchat {
 

@@ -7,12 +7,12 @@
 #include <set>
 #include <vector>
 
+#include "base/user_error.hpp"
+#include "files/orbit_trace.hpp"
 #include "files/run_file_names.hpp"
 #include "files/solution_file_reader.hpp"
 #include "plot/page_json.hpp"
-#include "problem_type/family.hpp"
-#include "text/user_error.hpp"
-#include "traces/orbit_trace.hpp"
+#include "settings/family.hpp"
 
 namespace tchat {
 

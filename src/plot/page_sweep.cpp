@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "attractor/attractor_kind.hpp"
+#include "motion/attractor_kind.hpp"
 #include "plot/page_json.hpp"
 
 namespace tchat {

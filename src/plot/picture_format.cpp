@@ -7,7 +7,7 @@
 #include <cctype>
 #include <filesystem>
 
-#include "text/user_error.hpp"
+#include "base/user_error.hpp"
 
 namespace tchat {
 

@@ -7,11 +7,11 @@
 #include <fstream>
 #include <memory>
 
+#include "base/text_file.hpp"
+#include "base/user_error.hpp"
 #include "files/temporary_file.hpp"
 #include "plot/gnuplot.hpp"
 #include "plot/gnuplot_script.hpp"
-#include "text/text_file.hpp"
-#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "text/user_error.hpp"
+#include "base/user_error.hpp"
 
 namespace tchat {
 

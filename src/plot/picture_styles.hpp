@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "files/line_kind.hpp"
 #include "plot/figure.hpp"
-#include "traces/line_kind.hpp"
 
 namespace tchat {
 

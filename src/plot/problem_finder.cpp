@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "constants/constants_file.hpp"
+#include "base/user_error.hpp"
 #include "files/recorded_names.hpp"
 #include "files/run_file_names.hpp"
 #include "plugin/plugin_build.hpp"
-#include "text/user_error.hpp"
+#include "settings/constants_file.hpp"
 
 namespace tchat {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hybrid/hybrid_system.hpp"
+#include "model/hybrid_system.hpp"
 #include "plugin/problem_library.hpp"
 
 namespace tchat {

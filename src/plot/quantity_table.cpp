@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "files/table_format.hpp"
 #include "plot/branch_quantity.hpp"
-#include "tables/table_format.hpp"
 
 namespace tchat {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "files/branch_file.hpp"
-#include "tables/table_writer.hpp"
+#include "files/table_writer.hpp"
 
 namespace tchat {
 

@@ -7,14 +7,14 @@
 #include <set>
 #include <system_error>
 
-#include "constants/constants_file.hpp"
+#include "base/user_error.hpp"
+#include "base/words.hpp"
 #include "files/run_file_names.hpp"
+#include "files/run_request.hpp"
 #include "files/run_set.hpp"
 #include "plugin/plugin_build.hpp"
-#include "setup/recorded_problem.hpp"
-#include "setup/run_request.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
+#include "settings/constants_file.hpp"
+#include "settings/recorded_problem.hpp"
 
 namespace tchat {
 

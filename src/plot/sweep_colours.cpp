@@ -8,9 +8,9 @@
 #include <limits>
 #include <map>
 
+#include "base/user_error.hpp"
 #include "plot/colour_scale.hpp"
 #include "plot/picture_styles.hpp"
-#include "text/user_error.hpp"
 
 namespace tchat {
 

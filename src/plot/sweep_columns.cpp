@@ -10,11 +10,11 @@
 #include <optional>
 #include <string_view>
 
-#include "constants/constant_value.hpp"
+#include "base/number.hpp"
+#include "base/user_error.hpp"
+#include "base/words.hpp"
 #include "plot/column_expression.hpp"
-#include "text/number.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
+#include "settings/constant_value.hpp"
 
 namespace tchat {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "plot/label_text.hpp"
-#include "sweep/sweep_file.hpp"
+#include "simulate/sweep_file.hpp"
 
 namespace tchat {
 

@@ -9,10 +9,10 @@
 #include <limits>
 #include <utility>
 
+#include "base/text_file.hpp"
+#include "base/user_error.hpp"
 #include "plot/picture_styles.hpp"
 #include "plot/sweep_colours.hpp"
-#include "text/text_file.hpp"
-#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "traces/orbit_trace.hpp"
+#include "files/orbit_trace.hpp"
 
 namespace tchat {
 

@@ -10,7 +10,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "text/text_file.hpp"
+#include "base/text_file.hpp"
 
 namespace tchat {
 

@@ -12,12 +12,12 @@
 #include <future>
 #include <sstream>
 
+#include "base/user_error.hpp"
+#include "base/words.hpp"
 #include "plugin/compiler_errors.hpp"
 #include "plugin/compiler_process.hpp"
 #include "plugin/instruction_set.hpp"
 #include "plugin/precompiled_header.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
 
 namespace tchat {
 

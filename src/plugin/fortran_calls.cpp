@@ -10,8 +10,8 @@
 #include <cstdlib>
 #include <new>
 
-#include "hybrid/parameter_layout.hpp"
-#include "text/user_error.hpp"
+#include "base/user_error.hpp"
+#include "model/parameter_layout.hpp"
 
 namespace tchat {
 

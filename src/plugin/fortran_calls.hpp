@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "hybrid/hybrid_system.hpp"
+#include "model/hybrid_system.hpp"
 #include "plugin/problem_sizes.hpp"
 
 namespace tchat {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "hybrid/difference_derivatives.hpp"
-#include "hybrid/parameter_layout.hpp"
-#include "text/user_error.hpp"
+#include "base/user_error.hpp"
+#include "model/difference_derivatives.hpp"
+#include "model/parameter_layout.hpp"
 
 namespace tchat {
 

@@ -32,7 +32,7 @@
 #include <string>
 #include <vector>
 
-#include "hybrid/hybrid_system.hpp"
+#include "model/hybrid_system.hpp"
 #include "plugin/fortran_calls.hpp"
 #include "plugin/problem_sizes.hpp"
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#include "text/text_file.hpp"
+#include "base/text_file.hpp"
 
 namespace tchat {
 

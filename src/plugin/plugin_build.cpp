@@ -16,14 +16,14 @@
 #include <fstream>
 #include <optional>
 
-#include "formulas/translation.hpp"
+#include "base/text_file.hpp"
+#include "base/user_error.hpp"
+#include "base/words.hpp"
 #include "plugin/build_stamp.hpp"
 #include "plugin/file_lock.hpp"
 #include "plugin/fortran_source.hpp"
 #include "plugin/precompiled_header.hpp"
-#include "text/text_file.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
+#include "plugin/translation.hpp"
 
 namespace tchat {
 

@@ -10,10 +10,10 @@
 #include <system_error>
 #include <utility>
 
+#include "base/words.hpp"
 #include "plugin/build_stamp.hpp"
 #include "plugin/compiler_process.hpp"
 #include "plugin/file_lock.hpp"
-#include "text/words.hpp"
 
 namespace tchat {
 

@@ -16,9 +16,9 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "base/user_error.hpp"
 #include "plugin/instruction_set.hpp"
 #include "plugin/plugin_call.hpp"
-#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "hybrid/hybrid_system.hpp"
+#include "model/hybrid_system.hpp"
 #include "plugin/exit_guard.hpp"
 #include "plugin/fortran_problem.hpp"
 #include "plugin/guarded_problem.hpp"

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "constants/settings_type.hpp"
-#include "hybrid/parameter_layout.hpp"
-#include "problem_type/family.hpp"
-#include "problem_type/problem_type.hpp"
+#include "model/parameter_layout.hpp"
+#include "settings/family.hpp"
+#include "settings/problem_type.hpp"
+#include "settings/settings_type.hpp"
 
 namespace tchat {
 

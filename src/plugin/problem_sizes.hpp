@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "constants/run_settings.hpp"
+#include "settings/run_settings.hpp"
 
 namespace tchat {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "hybrid/hybrid_system.hpp"
-#include "hybrid/index_vector.hpp"
+#include "model/hybrid_system.hpp"
+#include "model/index_vector.hpp"
 #include "tchat/problem.h"
 
 namespace tchat {

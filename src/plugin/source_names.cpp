@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <optional>
 
-#include "formulas/formula_file.hpp"
+#include "base/text_file.hpp"
+#include "plugin/formula_file.hpp"
 #include "plugin/plugin_build.hpp"
-#include "text/text_file.hpp"
 
 namespace tchat {
 

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include "bvp/transversality.hpp"
-#include "hybrid/contact_segment.hpp"
-#include "hybrid/event_at.hpp"
-#include "hybrid/identity_jump.hpp"
+#include "base/user_error.hpp"
+#include "model/contact_segment.hpp"
+#include "model/event_at.hpp"
+#include "model/identity_jump.hpp"
+#include "orbit/transversality.hpp"
 #include "resegment/new_orbit.hpp"
-#include "text/user_error.hpp"
 
 namespace tchat {
 

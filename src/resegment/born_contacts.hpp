@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "bvp/orbit.hpp"
-#include "hybrid/hybrid_system.hpp"
+#include "model/hybrid_system.hpp"
+#include "orbit/orbit.hpp"
 #include "resegment/new_orbit.hpp"
 #include "resegment/segment_list.hpp"
 
@@ -18,7 +18,7 @@ IndexVector given_contact(const std::string& text, const HybridSystem& system);
 /// about it is not known then.
 void require_change(const CutList& cut, std::size_t k, const LabelledOrbit& source, const HybridSystem& system);
 
-/// Does a contact segment of no duration (hybrid/contact_segment.hpp) follow contact k of the cut? Throws UserError
+/// Does a contact segment of no duration (model/contact_segment.hpp) follow contact k of the cut? Throws UserError
 /// when no orbit with a short contact exists there: the field beyond the surface leads away from it, or back at once
 /// (sliding).
 bool is_contact_born(const CutList& cut, std::size_t k, const LabelledOrbit& source, const HybridSystem& system);

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "bvp/grazing_orbit_system.hpp"
+#include "base/user_error.hpp"
+#include "orbit/grazing_orbit_system.hpp"
 #include "resegment/orbit_pieces.hpp"
 #include "run/branch_setup.hpp"
-#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "constants/settings_type.hpp"
+#include "base/user_error.hpp"
 #include "files/labelled_solution.hpp"
-#include "problem_type/point_type.hpp"
-#include "problem_type/problem_type.hpp"
-#include "text/user_error.hpp"
+#include "settings/point_type.hpp"
+#include "settings/problem_type.hpp"
+#include "settings/settings_type.hpp"
 
 namespace tchat {
 

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "setup/parameter_values.hpp"
-#include "start/orbit_start.hpp"
+#include "files/parameter_values.hpp"
+#include "run/orbit_start.hpp"
 
 namespace tchat {
 

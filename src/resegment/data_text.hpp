@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "bvp/orbit.hpp"
-#include "hybrid/hybrid_system.hpp"
+#include "model/hybrid_system.hpp"
+#include "orbit/orbit.hpp"
 
 namespace tchat {
 

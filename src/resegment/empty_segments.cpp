@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hybrid/identity_jump.hpp"
-#include "hybrid/relevant_events.hpp"
-#include "text/user_error.hpp"
+#include "base/user_error.hpp"
+#include "model/identity_jump.hpp"
+#include "model/relevant_events.hpp"
 
 namespace tchat {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "bvp/orbit.hpp"
-#include "hybrid/hybrid_system.hpp"
-#include "hybrid/index_vector.hpp"
+#include "model/hybrid_system.hpp"
+#include "model/index_vector.hpp"
+#include "orbit/orbit.hpp"
 
 namespace tchat {
 

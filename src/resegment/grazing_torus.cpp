@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <optional>
 
-#include "constants/settings_type.hpp"
-#include "problem_type/point_type.hpp"
-#include "text/user_error.hpp"
+#include "base/user_error.hpp"
+#include "settings/point_type.hpp"
+#include "settings/settings_type.hpp"
 
 namespace tchat {
 

@@ -2,9 +2,9 @@
 /// 152): the orbits stay what they are, the constants ask for the contact and free one parameter more.
 #pragma once
 
-#include "constants/run_settings.hpp"
 #include "files/labelled_solution.hpp"
-#include "hybrid/hybrid_system.hpp"
+#include "model/hybrid_system.hpp"
+#include "settings/run_settings.hpp"
 
 namespace tchat {
 

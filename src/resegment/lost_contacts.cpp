@@ -6,13 +6,13 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 
-#include "bvp/no_duration.hpp"
-#include "hybrid/contact_segment.hpp"
-#include "hybrid/event_at.hpp"
-#include "hybrid/identity_jump.hpp"
+#include "base/user_error.hpp"
+#include "model/contact_segment.hpp"
+#include "model/event_at.hpp"
+#include "model/identity_jump.hpp"
+#include "orbit/no_duration.hpp"
 #include "resegment/contact_point.hpp"
 #include "resegment/simultaneous_contacts.hpp"
-#include "text/user_error.hpp"
 
 namespace tchat {
 

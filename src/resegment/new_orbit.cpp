@@ -5,16 +5,16 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "constants/settings_type.hpp"
-#include "hybrid/identity_jump.hpp"
-#include "problem_type/problem_type.hpp"
+#include "base/user_error.hpp"
+#include "model/identity_jump.hpp"
 #include "resegment/born_contacts.hpp"
 #include "resegment/contact_point.hpp"
 #include "resegment/empty_segments.hpp"
 #include "resegment/segment_list.hpp"
 #include "resegment/signature_match.hpp"
 #include "resegment/simultaneous_contacts.hpp"
-#include "text/user_error.hpp"
+#include "settings/problem_type.hpp"
+#include "settings/settings_type.hpp"
 
 namespace tchat {
 

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "files/labelled_solution.hpp"
-#include "problem_type/point_type.hpp"
 #include "resegment/branch_side.hpp"
 #include "resegment/new_settings.hpp"
 #include "resegment/resegment.hpp"
-#include "start/orbit_start.hpp"
+#include "run/orbit_start.hpp"
+#include "settings/point_type.hpp"
 
 namespace tchat {
 

@@ -4,11 +4,10 @@
 
 #include <algorithm>
 
-#include "constants/settings_type.hpp"
-#include "hybrid/identity_jump.hpp"
-#include "problem_type/problem_type.hpp"
-#include "setup/problem_setup.hpp"
-#include "text/user_error.hpp"
+#include "base/user_error.hpp"
+#include "model/identity_jump.hpp"
+#include "settings/problem_type.hpp"
+#include "settings/settings_type.hpp"
 
 namespace tchat {
 

@@ -2,10 +2,10 @@
 /// new signature changes.
 #pragma once
 
-#include "constants/run_settings.hpp"
-#include "hybrid/hybrid_system.hpp"
-#include "problem_type/problem_id.hpp"
+#include "model/hybrid_system.hpp"
 #include "resegment/segment_list.hpp"
+#include "settings/problem_id.hpp"
+#include "settings/run_settings.hpp"
 
 namespace tchat {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bvp/mesh_adaptation.hpp"
+#include "orbit/mesh_adaptation.hpp"
 
 namespace tchat {
 

@@ -11,8 +11,8 @@
 
 #include <vector>
 
-#include "bvp/collocation_rule.hpp"
-#include "start/orbit_start.hpp"
+#include "orbit/collocation_rule.hpp"
+#include "run/orbit_start.hpp"
 
 namespace tchat {
 

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bvp/no_duration.hpp"
-#include "constants/constant_value.hpp"
-#include "problem_type/problem_type.hpp"
-#include "text/number.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
+#include "base/number.hpp"
+#include "base/user_error.hpp"
+#include "base/words.hpp"
+#include "orbit/no_duration.hpp"
+#include "settings/constant_value.hpp"
+#include "settings/problem_type.hpp"
 
 namespace tchat {
 

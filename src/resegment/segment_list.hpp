@@ -6,10 +6,10 @@
 #include <string_view>
 #include <vector>
 
-#include "constants/run_settings.hpp"
-#include "hybrid/hybrid_system.hpp"
+#include "model/hybrid_system.hpp"
 #include "resegment/contact_point.hpp"
 #include "resegment/orbit_pieces.hpp"
+#include "settings/run_settings.hpp"
 
 namespace tchat {
 

@@ -7,9 +7,9 @@
 #include <limits>
 #include <optional>
 
-#include "bvp/no_duration.hpp"
+#include "base/user_error.hpp"
+#include "orbit/no_duration.hpp"
 #include "resegment/empty_segments.hpp"
-#include "text/user_error.hpp"
 
 namespace tchat {
 

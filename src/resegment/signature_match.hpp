@@ -2,8 +2,8 @@
 /// change places, a segment may vanish or a new one appear.
 #pragma once
 
-#include "bvp/orbit.hpp"
-#include "hybrid/hybrid_system.hpp"
+#include "model/hybrid_system.hpp"
+#include "orbit/orbit.hpp"
 #include "resegment/segment_list.hpp"
 
 namespace tchat {

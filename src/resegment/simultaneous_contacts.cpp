@@ -4,12 +4,12 @@
 #include <cmath>
 #include <tuple>
 
-#include "bvp/event_minima.hpp"
-#include "bvp/no_duration.hpp"
-#include "bvp/periodic_orbit_system.hpp"
-#include "bvp/transversality.hpp"
-#include "hybrid/event_at.hpp"
-#include "hybrid/identity_jump.hpp"
+#include "model/event_at.hpp"
+#include "model/identity_jump.hpp"
+#include "orbit/event_minima.hpp"
+#include "orbit/no_duration.hpp"
+#include "orbit/periodic_orbit_system.hpp"
+#include "orbit/transversality.hpp"
 
 namespace tchat {
 

@@ -5,14 +5,14 @@
 #include <filesystem>
 #include <utility>
 
-#include "bvp/orbit.hpp"
+#include "base/user_error.hpp"
 #include "files/solution_file_reader.hpp"
-#include "hybrid/identity_jump.hpp"
-#include "hybrid/index_vector.hpp"
+#include "model/identity_jump.hpp"
+#include "model/index_vector.hpp"
+#include "orbit/orbit.hpp"
 #include "resegment/contact_point.hpp"
 #include "resegment/orbit_pieces.hpp"
-#include "start/orbit_start.hpp"
-#include "text/user_error.hpp"
+#include "run/orbit_start.hpp"
 
 namespace tchat {
 

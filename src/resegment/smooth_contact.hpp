@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "constants/run_settings.hpp"
 #include "files/labelled_solution.hpp"
-#include "hybrid/hybrid_system.hpp"
+#include "model/hybrid_system.hpp"
+#include "settings/run_settings.hpp"
 
 namespace tchat {
 

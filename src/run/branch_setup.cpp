@@ -1,20 +1,20 @@
 #include "run/branch_setup.hpp"
+#include "run/solver_settings.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "bvp/bordered_problem.hpp"
-#include "bvp/mesh_adaptation.hpp"
-#include "constants/settings_type.hpp"
+#include "base/user_error.hpp"
 #include "files/labelled_solution.hpp"
-#include "problem_type/family.hpp"
-#include "problem_type/point_type.hpp"
-#include "problem_type/problem_type.hpp"
-#include "setup/problem_setup.hpp"
-#include "setup/run_monitors.hpp"
-#include "text/user_error.hpp"
+#include "orbit/bordered_problem.hpp"
+#include "orbit/mesh_adaptation.hpp"
+#include "run/run_monitors.hpp"
+#include "settings/family.hpp"
+#include "settings/point_type.hpp"
+#include "settings/problem_type.hpp"
+#include "settings/settings_type.hpp"
 
 namespace tchat {
 

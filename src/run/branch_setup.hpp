@@ -9,12 +9,12 @@
 #include <memory>
 #include <optional>
 
-#include "bvp/defining_system.hpp"
-#include "constants/run_settings.hpp"
+#include "base/user_error.hpp"
 #include "continuation/path_follower.hpp"
+#include "orbit/defining_system.hpp"
 #include "run/branch_start.hpp"
 #include "run/test_lists.hpp"
-#include "text/user_error.hpp"
+#include "settings/run_settings.hpp"
 
 namespace tchat {
 

@@ -1,19 +1,19 @@
 #include "run/branch_start.hpp"
+#include "run/solver_settings.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "bvp/unfolded_system.hpp"
+#include "base/user_error.hpp"
 #include "continuation/branch_analysis.hpp"
 #include "continuation/path_follower.hpp"
 #include "files/labelled_solution.hpp"
-#include "problem_type/point_type.hpp"
-#include "problem_type/problem_type.hpp"
+#include "orbit/unfolded_system.hpp"
 #include "run/first_correction.hpp"
-#include "setup/problem_setup.hpp"
-#include "text/user_error.hpp"
+#include "settings/point_type.hpp"
+#include "settings/problem_type.hpp"
 
 namespace tchat {
 

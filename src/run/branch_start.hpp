@@ -2,10 +2,10 @@
 /// 6).
 #pragma once
 
-#include "constants/run_settings.hpp"
 #include "continuation/newton_result.hpp"
 #include "continuation/path_point.hpp"
-#include "start/start_selection.hpp"
+#include "run/start_selection.hpp"
+#include "settings/run_settings.hpp"
 
 namespace tchat {
 

@@ -1,4 +1,5 @@
 #include "run/branch_switch.hpp"
+#include "run/solver_settings.hpp"
 
 #include <fmt/format.h>
 
@@ -6,14 +7,13 @@
 #include <cmath>
 #include <optional>
 
-#include "bvp/critical_multiplier.hpp"
-#include "constants/settings_type.hpp"
+#include "base/user_error.hpp"
 #include "files/labelled_solution.hpp"
-#include "problem_type/family.hpp"
-#include "problem_type/point_type.hpp"
-#include "problem_type/problem_type.hpp"
-#include "setup/problem_setup.hpp"
-#include "text/user_error.hpp"
+#include "orbit/critical_multiplier.hpp"
+#include "settings/family.hpp"
+#include "settings/point_type.hpp"
+#include "settings/problem_type.hpp"
+#include "settings/settings_type.hpp"
 
 namespace tchat {
 

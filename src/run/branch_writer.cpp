@@ -1,4 +1,5 @@
 #include "run/branch_writer.hpp"
+#include "run/solver_settings.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,14 +8,13 @@
 #include <limits>
 #include <utility>
 
-#include "constants/settings_type.hpp"
 #include "continuation/solution_measure.hpp"
 #include "files/labelled_solution.hpp"
 #include "files/number_format.hpp"
-#include "hybrid/parameter_vector.hpp"
-#include "problem_type/family.hpp"
-#include "problem_type/point_type.hpp"
-#include "setup/problem_setup.hpp"
+#include "model/parameter_vector.hpp"
+#include "settings/family.hpp"
+#include "settings/point_type.hpp"
+#include "settings/settings_type.hpp"
 
 namespace tchat {
 

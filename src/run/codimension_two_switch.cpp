@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "constants/settings_type.hpp"
-#include "problem_type/point_type.hpp"
-#include "problem_type/problem_type.hpp"
+#include "base/user_error.hpp"
 #include "run/branch_switch.hpp"
 #include "run/hopf_switch.hpp"
-#include "text/user_error.hpp"
+#include "settings/point_type.hpp"
+#include "settings/problem_type.hpp"
+#include "settings/settings_type.hpp"
 
 namespace tchat {
 

@@ -2,10 +2,10 @@
 
 #include <cstdlib>
 
-#include "constants/settings_type.hpp"
-#include "special_points/bifurcation_tests.hpp"
-#include "special_points/equilibrium_curve_tests.hpp"
-#include "special_points/equilibrium_tests.hpp"
+#include "settings/settings_type.hpp"
+#include "stability/bifurcation_tests.hpp"
+#include "stability/equilibrium_curve_tests.hpp"
+#include "stability/equilibrium_tests.hpp"
 
 namespace tchat {
 

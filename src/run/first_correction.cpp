@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "bvp/evaluation_failure.hpp"
-#include "bvp/mesh_adaptation.hpp"
+#include "base/user_error.hpp"
 #include "continuation/branch_analysis.hpp"
-#include "hybrid/undefined_value.hpp"
-#include "setup/run_monitors.hpp"
-#include "text/user_error.hpp"
+#include "model/undefined_value.hpp"
+#include "orbit/evaluation_failure.hpp"
+#include "orbit/mesh_adaptation.hpp"
+#include "plugin/named_parameters.hpp"
 
 namespace tchat {
 

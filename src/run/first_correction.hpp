@@ -1,10 +1,10 @@
 /// From a start that is not yet a solution to an orbit at the parameter values asked for.
 #pragma once
 
-#include "constants/run_settings.hpp"
 #include "continuation/newton_result.hpp"
 #include "continuation/path_point.hpp"
-#include "start/start_selection.hpp"
+#include "run/start_selection.hpp"
+#include "settings/run_settings.hpp"
 
 namespace tchat {
 

@@ -1,4 +1,5 @@
 #include "run/hopf_switch.hpp"
+#include "run/solver_settings.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,18 +10,17 @@
 #include <numeric>
 #include <optional>
 
-#include "bvp/equilibrium_system.hpp"
-#include "constants/settings_type.hpp"
-#include "hybrid/event_at.hpp"
-#include "hybrid/identity_jump.hpp"
-#include "linear_algebra/dense_matrix.hpp"
-#include "problem_type/family.hpp"
-#include "problem_type/point_type.hpp"
-#include "problem_type/problem_type.hpp"
+#include "base/user_error.hpp"
+#include "linear/dense_matrix.hpp"
+#include "model/event_at.hpp"
+#include "model/identity_jump.hpp"
+#include "orbit/equilibrium_system.hpp"
 #include "run/unwatched_events.hpp"
-#include "setup/problem_setup.hpp"
+#include "settings/family.hpp"
+#include "settings/point_type.hpp"
+#include "settings/problem_type.hpp"
+#include "settings/settings_type.hpp"
 #include "stability/equilibrium_eigenvalues.hpp"
-#include "text/user_error.hpp"
 
 namespace tchat {
 

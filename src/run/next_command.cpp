@@ -4,15 +4,15 @@
 
 #include <algorithm>
 
-#include "constants/settings_type.hpp"
+#include "base/words.hpp"
 #include "files/run_files.hpp"
-#include "hybrid/identity_jump.hpp"
-#include "hybrid/parameter_vector.hpp"
+#include "model/identity_jump.hpp"
+#include "model/parameter_vector.hpp"
+#include "plugin/named_parameters.hpp"
 #include "plugin/plugin_build.hpp"
-#include "problem_type/family.hpp"
-#include "problem_type/problem_type.hpp"
-#include "setup/run_monitors.hpp"
-#include "text/words.hpp"
+#include "settings/family.hpp"
+#include "settings/problem_type.hpp"
+#include "settings/settings_type.hpp"
 
 namespace tchat {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "constants/run_settings.hpp"
-#include "hybrid/hybrid_system.hpp"
-#include "problem_type/point_type.hpp"
+#include "model/hybrid_system.hpp"
+#include "settings/point_type.hpp"
+#include "settings/run_settings.hpp"
 
 namespace tchat {
 

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <array>
 
-#include "constants/constants_file.hpp"
-#include "constants/settings_type.hpp"
-#include "hybrid/parameter_vector.hpp"
-#include "problem_type/family.hpp"
-#include "problem_type/point_type.hpp"
-#include "problem_type/problem_type.hpp"
-#include "setup/run_monitors.hpp"
+#include "model/parameter_vector.hpp"
+#include "plugin/named_parameters.hpp"
+#include "settings/constants_file.hpp"
+#include "settings/family.hpp"
+#include "settings/point_type.hpp"
+#include "settings/problem_type.hpp"
+#include "settings/settings_type.hpp"
 
 namespace tchat {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "constants/run_settings.hpp"
-#include "hybrid/hybrid_system.hpp"
-#include "start/start_selection.hpp"
+#include "model/hybrid_system.hpp"
+#include "run/start_selection.hpp"
+#include "settings/run_settings.hpp"
 
 namespace tchat {
 

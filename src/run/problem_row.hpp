@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <vector>
 
-#include "bvp/bordered_problem.hpp"
-#include "constants/settings_type.hpp"
-#include "problem_type/point_type.hpp"
-#include "problem_type/problem_type.hpp"
+#include "orbit/bordered_problem.hpp"
 #include "run/branch_setup.hpp"
+#include "settings/point_type.hpp"
+#include "settings/problem_type.hpp"
+#include "settings/settings_type.hpp"
 
 namespace tchat {
 

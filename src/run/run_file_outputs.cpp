@@ -7,13 +7,13 @@
 #include <utility>
 #include <vector>
 
-#include "constants/settings_type.hpp"
 #include "files/diagnostics_file.hpp"
 #include "files/labelled_solution.hpp"
 #include "files/number_format.hpp"
 #include "files/solution_file.hpp"
-#include "problem_type/family.hpp"
-#include "start/orbit_start.hpp"
+#include "run/orbit_start.hpp"
+#include "settings/family.hpp"
+#include "settings/settings_type.hpp"
 
 namespace tchat {
 

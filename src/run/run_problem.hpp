@@ -4,7 +4,7 @@
 #include <functional>
 #include <ostream>
 
-#include "setup/run_request.hpp"
+#include "files/run_request.hpp"
 
 namespace tchat {
 

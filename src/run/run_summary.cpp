@@ -1,5 +1,5 @@
 #include "run/run_summary.hpp"
-#include "problem_type/family.hpp"
+#include "settings/family.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <set>
 
-#include "text/folded.hpp"
+#include "base/folded.hpp"
 
 namespace tchat {
 

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "base/progress_line.hpp"
 #include "files/point_table.hpp"
-#include "setup/progress_line.hpp"
-#include "special_points/grazing_curve_tests.hpp"
+#include "stability/grazing_curve_tests.hpp"
 
 namespace tchat {
 

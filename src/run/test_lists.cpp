@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "constants/settings_type.hpp"
-#include "hybrid/identity_jump.hpp"
-#include "problem_type/problem_type.hpp"
-#include "setup/run_monitors.hpp"
-#include "special_points/bifurcation_tests.hpp"
-#include "special_points/contact_test.hpp"
-#include "special_points/sliding_bifurcation.hpp"
-#include "special_points/user_value_test.hpp"
+#include "model/identity_jump.hpp"
+#include "plugin/named_parameters.hpp"
+#include "settings/problem_type.hpp"
+#include "settings/settings_type.hpp"
+#include "stability/bifurcation_tests.hpp"
+#include "stability/contact_test.hpp"
+#include "stability/sliding_bifurcation.hpp"
+#include "stability/user_value_test.hpp"
 
 namespace tchat {
 

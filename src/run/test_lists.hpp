@@ -1,9 +1,9 @@
 /// The test functions that problem types put together, by what the constants ask for: ILP, ISP, UZR, GCIPSI, GRSTOP.
 #pragma once
 
-#include "bvp/defining_system.hpp"
-#include "constants/run_settings.hpp"
-#include "special_points/test_function.hpp"
+#include "orbit/defining_system.hpp"
+#include "settings/run_settings.hpp"
+#include "stability/test_function.hpp"
 
 namespace tchat {
 

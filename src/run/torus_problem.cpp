@@ -1,20 +1,21 @@
 #include "run/torus_problem.hpp"
+#include "run/solver_settings.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <numbers>
 
-#include "bvp/torus_system.hpp"
-#include "constants/settings_type.hpp"
+#include "base/user_error.hpp"
+#include "orbit/torus_system.hpp"
+#include "plugin/named_parameters.hpp"
+#include "run/run_monitors.hpp"
 #include "run/test_lists.hpp"
 #include "run/torus_start.hpp"
-#include "setup/problem_setup.hpp"
-#include "setup/run_monitors.hpp"
-#include "special_points/bifurcation_tests.hpp"
-#include "special_points/torus_contact.hpp"
-#include "special_points/torus_contact_condition.hpp"
-#include "text/user_error.hpp"
+#include "settings/settings_type.hpp"
+#include "stability/bifurcation_tests.hpp"
+#include "stability/torus_contact.hpp"
+#include "stability/torus_contact_condition.hpp"
 
 namespace tchat {
 

@@ -1,4 +1,5 @@
 #include "run/torus_start.hpp"
+#include "run/solver_settings.hpp"
 
 #include <fmt/format.h>
 
@@ -7,15 +8,14 @@
 #include <limits>
 #include <numbers>
 
-#include "bvp/torus_system.hpp"
-#include "constants/settings_type.hpp"
-#include "hybrid/event_at.hpp"
-#include "linear_algebra/dense_matrix.hpp"
-#include "problem_type/point_type.hpp"
+#include "base/user_error.hpp"
+#include "linear/dense_matrix.hpp"
+#include "model/event_at.hpp"
+#include "orbit/torus_system.hpp"
 #include "run/torus_problem.hpp"
-#include "setup/problem_setup.hpp"
+#include "settings/point_type.hpp"
+#include "settings/settings_type.hpp"
 #include "stability/segment_map.hpp"
-#include "text/user_error.hpp"
 
 namespace tchat {
 

@@ -1,4 +1,4 @@
-/// Runs of invariant tori (bvp/torus_system.hpp): their settings, and how they begin.
+/// Runs of invariant tori (orbit/torus_system.hpp): their settings, and how they begin.
 ///
 /// The constants describe one return. What is computed are N = 2 Q + 1 orbits of it, so the settings of the run have N
 /// times as many segments; the constants that are written down (r.O) stay those of one return, and N is told by the

@@ -8,9 +8,9 @@
 #include <map>
 #include <set>
 
-#include "constants/settings_type.hpp"
-#include "hybrid/relevant_events.hpp"
-#include "problem_type/family.hpp"
+#include "model/relevant_events.hpp"
+#include "settings/family.hpp"
+#include "settings/settings_type.hpp"
 
 namespace tchat {
 

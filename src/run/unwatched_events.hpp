@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "bvp/orbit.hpp"
-#include "constants/run_settings.hpp"
-#include "hybrid/hybrid_system.hpp"
+#include "model/hybrid_system.hpp"
+#include "orbit/orbit.hpp"
+#include "settings/run_settings.hpp"
 
 namespace tchat {
 

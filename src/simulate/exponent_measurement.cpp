@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "attractor/chaos_evidence.hpp"
-#include "attractor/exponent_signs.hpp"
-#include "setup/progress_line.hpp"
+#include "base/progress_line.hpp"
+#include "motion/chaos_evidence.hpp"
+#include "motion/exponent_signs.hpp"
 
 namespace tchat {
 

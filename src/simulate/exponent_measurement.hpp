@@ -5,7 +5,7 @@
 #include <ostream>
 #include <string>
 
-#include "attractor/lyapunov_exponents.hpp"
+#include "motion/lyapunov_exponents.hpp"
 #include "simulate/simulation_request.hpp"
 
 namespace tchat {

@@ -6,10 +6,10 @@
 #include <ostream>
 #include <string>
 
+#include "motion/hybrid_simulation.hpp"
 #include "plugin/problem_library.hpp"
 #include "simulate/simulation_constants.hpp"
 #include "simulate/simulation_request.hpp"
-#include "simulation/hybrid_simulation.hpp"
 
 namespace tchat {
 

@@ -7,11 +7,11 @@
 #include <optional>
 #include <set>
 
-#include "constants/settings_type.hpp"
-#include "hybrid/identity_jump.hpp"
-#include "hybrid/parameter_vector.hpp"
-#include "problem_type/problem_type.hpp"
-#include "setup/parameter_values.hpp"
+#include "files/parameter_values.hpp"
+#include "model/identity_jump.hpp"
+#include "model/parameter_vector.hpp"
+#include "settings/problem_type.hpp"
+#include "settings/settings_type.hpp"
 
 namespace tchat {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "constants/run_settings.hpp"
-#include "hybrid/hybrid_system.hpp"
-#include "simulation/found_orbit.hpp"
-#include "simulation/orbit_samples.hpp"
+#include "model/hybrid_system.hpp"
+#include "motion/found_orbit.hpp"
+#include "motion/orbit_samples.hpp"
+#include "settings/run_settings.hpp"
 
 namespace tchat {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "simulation/hybrid_simulation.hpp"
+#include "motion/hybrid_simulation.hpp"
 
 namespace tchat {
 

@@ -4,18 +4,20 @@
 
 #include <filesystem>
 
-#include "attractor/attractor_search.hpp"
-#include "attractor/equilibrium_approach.hpp"
-#include "constants/constants_writer.hpp"
+#include "base/progress_line.hpp"
+#include "base/user_error.hpp"
+#include "files/parameter_values.hpp"
 #include "files/run_file_names.hpp"
+#include "files/run_request.hpp"
 #include "files/simulation_files.hpp"
 #include "files/whole_file.hpp"
 #include "files/writable_file.hpp"
-#include "setup/parameter_values.hpp"
-#include "setup/problem_setup.hpp"
-#include "setup/progress_line.hpp"
-#include "setup/recorded_problem.hpp"
-#include "setup/run_request.hpp"
+#include "motion/attractor_search.hpp"
+#include "motion/equilibrium_approach.hpp"
+#include "motion/found_orbit.hpp"
+#include "plugin/named_parameters.hpp"
+#include "settings/constants_writer.hpp"
+#include "settings/recorded_problem.hpp"
 #include "simulate/exponent_measurement.hpp"
 #include "simulate/loaded_problem.hpp"
 #include "simulate/orbit_hand_over.hpp"
@@ -23,8 +25,6 @@
 #include "simulate/simulation_start.hpp"
 #include "simulate/simulation_summary.hpp"
 #include "simulate/start_notice.hpp"
-#include "simulation/found_orbit.hpp"
-#include "text/user_error.hpp"
 
 namespace tchat {
 

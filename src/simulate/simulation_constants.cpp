@@ -4,13 +4,13 @@
 
 #include <algorithm>
 
-#include "constants/constants_file.hpp"
-#include "hybrid/index_vector.hpp"
-#include "setup/problem_setup.hpp"
-#include "setup/run_request.hpp"
+#include "base/user_error.hpp"
+#include "files/run_request.hpp"
+#include "model/index_vector.hpp"
+#include "motion/mode_rule.hpp"
+#include "plugin/problem_setup.hpp"
+#include "settings/constants_file.hpp"
 #include "simulate/simulation_rule.hpp"
-#include "simulation/mode_rule.hpp"
-#include "text/user_error.hpp"
 
 namespace tchat {
 

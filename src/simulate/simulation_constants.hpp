@@ -3,10 +3,10 @@
 
 #include <string>
 
-#include "constants/run_settings.hpp"
-#include "constants/settings_draft.hpp"
-#include "hybrid/hybrid_system.hpp"
+#include "model/hybrid_system.hpp"
 #include "plugin/problem_sizes.hpp"
+#include "settings/run_settings.hpp"
+#include "settings/settings_draft.hpp"
 #include "simulate/simulation_request.hpp"
 
 namespace tchat {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "simulation/simulation_run.hpp"
+#include "motion/simulation_run.hpp"
 
 namespace tchat {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "text/user_error.hpp"
+#include "base/user_error.hpp"
 
 namespace tchat {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "motion/mode_rule.hpp"
 #include "simulate/simulation_constants.hpp"
 #include "simulate/simulation_request.hpp"
-#include "simulation/mode_rule.hpp"
 
 namespace tchat {
 

@@ -8,17 +8,16 @@
 #include <optional>
 #include <set>
 
+#include "base/number.hpp"
+#include "base/user_error.hpp"
+#include "base/words.hpp"
 #include "files/dat_file.hpp"
+#include "files/parameter_values.hpp"
+#include "files/run_request.hpp"
 #include "files/solution_file_reader.hpp"
-#include "hybrid/event_at.hpp"
-#include "hybrid/mode_dimensions.hpp"
-#include "setup/parameter_values.hpp"
-#include "setup/problem_setup.hpp"
-#include "setup/run_request.hpp"
+#include "model/event_at.hpp"
+#include "model/mode_dimensions.hpp"
 #include "simulate/simulation_rule.hpp"
-#include "text/number.hpp"
-#include "text/user_error.hpp"
-#include "text/words.hpp"
 
 namespace tchat {
 

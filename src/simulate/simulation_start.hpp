@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "hybrid/parameter_vector.hpp"
+#include "model/parameter_vector.hpp"
+#include "motion/mode_rule.hpp"
+#include "motion/surface_start.hpp"
 #include "simulate/simulation_constants.hpp"
 #include "simulate/simulation_request.hpp"
-#include "simulation/mode_rule.hpp"
-#include "simulation/surface_start.hpp"
 
 namespace tchat {
 

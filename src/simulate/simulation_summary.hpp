@@ -3,10 +3,10 @@
 
 #include <string>
 
-#include "attractor/attractor_search.hpp"
+#include "motion/attractor_search.hpp"
+#include "motion/found_orbit.hpp"
+#include "motion/simulation_run.hpp"
 #include "simulate/simulation_start.hpp"
-#include "simulation/found_orbit.hpp"
-#include "simulation/simulation_run.hpp"
 
 namespace tchat {
 

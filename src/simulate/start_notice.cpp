@@ -7,9 +7,9 @@
 #include <map>
 #include <utility>
 
-#include "hybrid/event_at.hpp"
-#include "hybrid/identity_jump.hpp"
-#include "hybrid/relevant_events.hpp"
+#include "model/event_at.hpp"
+#include "model/identity_jump.hpp"
+#include "model/relevant_events.hpp"
 
 namespace tchat {
 

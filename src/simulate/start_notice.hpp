@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "simulation/hybrid_simulation.hpp"
+#include "motion/hybrid_simulation.hpp"
 
 namespace tchat {
 

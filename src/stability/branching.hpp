@@ -25,7 +25,7 @@
 
 #include <optional>
 
-#include "bvp/orbit.hpp"
+#include "orbit/orbit.hpp"
 #include "stability/multilinear.hpp"
 
 namespace tchat {

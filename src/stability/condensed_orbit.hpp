@@ -5,8 +5,8 @@
 #include <complex>
 #include <optional>
 
-#include "bvp/condensed_system.hpp"
-#include "bvp/defining_system.hpp"
+#include "orbit/condensed_system.hpp"
+#include "orbit/defining_system.hpp"
 #include "stability/return_map_forms.hpp"
 
 namespace tchat {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "linear_algebra/dense_matrix.hpp"
+#include "linear/dense_matrix.hpp"
 
 namespace tchat {
 

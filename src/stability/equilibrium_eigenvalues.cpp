@@ -4,7 +4,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "linear_algebra/dense_matrix.hpp"
+#include "linear/dense_matrix.hpp"
 
 namespace tchat {
 

@@ -1,7 +1,7 @@
 /// Eigenvalues of f_x at an equilibrium, in the place of the multipliers of an orbit.
 #pragma once
 
-#include "bvp/defining_system.hpp"
+#include "orbit/defining_system.hpp"
 #include "stability/multipliers.hpp"
 
 namespace tchat {

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "bvp/defining_system.hpp"
+#include "orbit/defining_system.hpp"
 
 namespace tchat {
 

@@ -8,7 +8,7 @@
 
 #include <optional>
 
-#include "bvp/defining_system.hpp"
+#include "orbit/defining_system.hpp"
 #include "stability/branching.hpp"
 
 namespace tchat {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bvp/no_duration.hpp"
-#include "bvp/transversality.hpp"
-#include "hybrid/event_at.hpp"
-#include "linear_algebra/dense_matrix.hpp"
-#include "linear_algebra/reflection.hpp"
+#include "linear/dense_matrix.hpp"
+#include "linear/reflection.hpp"
+#include "model/event_at.hpp"
+#include "orbit/no_duration.hpp"
+#include "orbit/transversality.hpp"
 
 namespace tchat {
 

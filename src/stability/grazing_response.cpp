@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bvp/orbit_accuracy.hpp"
+#include "orbit/orbit_accuracy.hpp"
 
 namespace tchat {
 
@@ -26,7 +26,7 @@ struct ScaledMatrix {
   }
 };
 
-ScaledMatrix product(const ScaledMatrix& a, const ScaledMatrix& b) {
+ScaledMatrix scaled_product(const ScaledMatrix& a, const ScaledMatrix& b) {
   ScaledMatrix result{a.digits * b.digits, a.exponent + b.exponent};
   result.normalise();
   return result;
@@ -35,8 +35,8 @@ ScaledMatrix product(const ScaledMatrix& a, const ScaledMatrix& b) {
 /// A^n v by squaring A.
 ScaledMatrix power_times(ScaledMatrix a, int n, ScaledMatrix v) {
   for (; n > 0; n /= 2) {
-    if (n % 2 == 1) v = product(a, v);
-    a = product(a, a);
+    if (n % 2 == 1) v = scaled_product(a, v);
+    a = scaled_product(a, a);
   }
   return v;
 }
@@ -82,7 +82,7 @@ std::vector<ImpactReturn> impact_returns(const VectorXd& event_gradient, const M
   ScaledMatrix turned{direction.with_errors()};
   for (int n = 1; n <= count; ++n) {
     result.push_back(one_more(event_gradient, return_map, turned));
-    turned = product({return_map}, turned);
+    turned = scaled_product({return_map}, turned);
   }
   return result;
 }

@@ -2,7 +2,7 @@
 
 #include <complex>
 
-#include "linear_algebra/dense_matrix.hpp"
+#include "linear/dense_matrix.hpp"
 #include "stability/equilibrium_forms.hpp"
 
 namespace tchat {

@@ -1,7 +1,7 @@
 /// The first Lyapunov coefficient of a Hopf bifurcation: which way the periodic orbits go that are born there.
 #pragma once
 
-#include "bvp/defining_system.hpp"
+#include "orbit/defining_system.hpp"
 #include "stability/multilinear.hpp"
 
 namespace tchat {

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <complex>
 
-#include "hybrid/hybrid_system.hpp"
+#include "model/hybrid_system.hpp"
 
 namespace tchat {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bvp/mesh_adaptation.hpp"
+#include "orbit/mesh_adaptation.hpp"
 #include "stability/condensed_orbit.hpp"
 #include "stability/multilinear.hpp"
 #include "stability/orbit_forms.hpp"

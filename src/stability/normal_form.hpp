@@ -25,9 +25,9 @@
 #include <memory>
 #include <optional>
 
-#include "bvp/defining_system.hpp"
-#include "bvp/orbit.hpp"
-#include "bvp/orbit_condition.hpp"
+#include "orbit/defining_system.hpp"
+#include "orbit/orbit.hpp"
+#include "orbit/orbit_condition.hpp"
 #include "stability/branching.hpp"
 #include "stability/multilinear.hpp"
 #include "stability/return_map_forms.hpp"

@@ -1,6 +1,6 @@
 #include "stability/orbit_forms.hpp"
 
-#include "bvp/mesh_adaptation.hpp"
+#include "orbit/mesh_adaptation.hpp"
 
 namespace tchat {
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-#include "bvp/nodal_system.hpp"
+#include "orbit/nodal_system.hpp"
 #include "stability/condensed_orbit.hpp"
 #include "stability/orbit_forms.hpp"
 #include "stability/shifted_orbit.hpp"

@@ -25,9 +25,9 @@
 #include <optional>
 #include <vector>
 
-#include "bvp/defining_system.hpp"
-#include "bvp/orbit.hpp"
-#include "problem_type/point_type.hpp"
+#include "orbit/defining_system.hpp"
+#include "orbit/orbit.hpp"
+#include "settings/point_type.hpp"
 #include "stability/multilinear.hpp"
 
 namespace tchat {

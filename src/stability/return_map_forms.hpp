@@ -20,11 +20,11 @@
 #include <complex>
 #include <vector>
 
-#include "bvp/condensed_return_map.hpp"
-#include "bvp/condensed_system.hpp"
-#include "bvp/directional_expansion.hpp"
-#include "bvp/orbit_condition.hpp"
-#include "linear_algebra/sparse_lu.hpp"
+#include "linear/sparse_lu.hpp"
+#include "orbit/condensed_return_map.hpp"
+#include "orbit/condensed_system.hpp"
+#include "orbit/directional_expansion.hpp"
+#include "orbit/orbit_condition.hpp"
 #include "stability/multilinear.hpp"
 
 namespace tchat {

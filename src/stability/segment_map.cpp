@@ -1,7 +1,7 @@
 #include "stability/segment_map.hpp"
 
-#include "hybrid/event_at.hpp"
-#include "linear_algebra/dense_matrix.hpp"
+#include "linear/dense_matrix.hpp"
+#include "model/event_at.hpp"
 
 namespace tchat {
 

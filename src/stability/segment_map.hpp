@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "bvp/condensed_system.hpp"
+#include "orbit/condensed_system.hpp"
 
 namespace tchat {
 

@@ -5,7 +5,7 @@
 #include <complex>
 #include <optional>
 
-#include "bvp/nodal_system.hpp"
+#include "orbit/nodal_system.hpp"
 
 namespace tchat {
 

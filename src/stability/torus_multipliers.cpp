@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bvp/rotation.hpp"
+#include "orbit/rotation.hpp"
 #include "stability/segment_map.hpp"
 
 namespace tchat {

@@ -14,7 +14,7 @@
 /// Another is 0, along the flow.
 #pragma once
 
-#include "bvp/torus_system.hpp"
+#include "orbit/torus_system.hpp"
 #include "stability/multipliers.hpp"
 
 namespace tchat {

@@ -9,7 +9,7 @@
 
 #include <string>
 
-#include "bvp/orbit.hpp"
+#include "orbit/orbit.hpp"
 
 namespace tchat::benchmark {
 

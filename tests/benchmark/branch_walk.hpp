@@ -2,8 +2,8 @@
 /// steps, back again, and so on.
 #pragma once
 
-#include "bvp/periodic_orbit_system.hpp"
 #include "continuation/path_follower.hpp"
+#include "orbit/periodic_orbit_system.hpp"
 #include "stability/floquet_multipliers.hpp"
 
 namespace tchat::benchmark {

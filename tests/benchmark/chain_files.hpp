@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "bvp/orbit.hpp"
+#include "orbit/orbit.hpp"
 
 namespace tchat::benchmark {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "hybrid/hybrid_system.hpp"
+#include "model/hybrid_system.hpp"
 
 namespace tchat::benchmark {
 

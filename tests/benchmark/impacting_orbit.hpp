@@ -4,8 +4,8 @@
 /// phase, from x1 = 1, x2 = -r v to x1 = 1, x2 = v after one forcing period T = 2 pi / omega.
 #pragma once
 
-#include "bvp/orbit.hpp"
-#include "hybrid/hybrid_system.hpp"
+#include "model/hybrid_system.hpp"
+#include "orbit/orbit.hpp"
 
 namespace tchat::benchmark {
 

@@ -9,9 +9,9 @@
 
 #include "benchmark/branch_walk.hpp"
 #include "benchmark/timing.hpp"
-#include "linear_algebra/lane_kernel.hpp"
-#include "linear_algebra/partial_lu.hpp"
-#include "linear_algebra/small_lu.hpp"
+#include "linear/lane_kernel.hpp"
+#include "linear/partial_lu.hpp"
+#include "linear/small_lu.hpp"
 
 namespace tchat::benchmark {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "bvp/orbit.hpp"
+#include "orbit/orbit.hpp"
 
 namespace tchat::benchmark {
 

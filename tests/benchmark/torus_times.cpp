@@ -11,11 +11,11 @@
 
 #include "../problems/torus/torus.cpp"
 #include "benchmark/timing.hpp"
-#include "bvp/rotation.hpp"
-#include "bvp/torus_system.hpp"
-#include "composite_map/invariant_curve.hpp"
 #include "continuation/path_follower.hpp"
-#include "simulation/hybrid_simulation.hpp"
+#include "maps/invariant_curve.hpp"
+#include "motion/hybrid_simulation.hpp"
+#include "orbit/rotation.hpp"
+#include "orbit/torus_system.hpp"
 #include "stability/torus_multipliers.hpp"
 #include "support/test_system.hpp"
 

@@ -10,14 +10,14 @@
 
 #include "benchmark/compiled_problem.hpp"
 #include "benchmark/timing.hpp"
-#include "bvp/critical_multiplier.hpp"
-#include "bvp/critical_pair.hpp"
-#include "bvp/grazing_orbit_system.hpp"
-#include "bvp/periodic_orbit_system.hpp"
 #include "continuation/path_follower.hpp"
-#include "special_points/impacting_orbits.hpp"
-#include "special_points/langford.hpp"
+#include "orbit/critical_multiplier.hpp"
+#include "orbit/critical_pair.hpp"
+#include "orbit/grazing_orbit_system.hpp"
+#include "orbit/periodic_orbit_system.hpp"
 #include "stability/floquet_multipliers.hpp"
+#include "stability/impacting_orbits.hpp"
+#include "stability/langford.hpp"
 
 namespace tchat::benchmark {
 

@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 
 #include "continuation/solution_measure.hpp"
-#include "problem_type/family.hpp"
-#include "special_points/normal_forms.hpp"
-#include "special_points/user_value_test.hpp"
+#include "settings/family.hpp"
+#include "stability/normal_forms.hpp"
+#include "stability/user_value_test.hpp"
 #include "support/branch_fixture.hpp"
 #include "support/linear_oscillator.hpp"
 

@@ -4,10 +4,10 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "bvp/critical_pair.hpp"
 #include "continuation/homoclinic_limit.hpp"
-#include "special_points/bifurcation_tests.hpp"
-#include "special_points/curve_tests.hpp"
+#include "orbit/critical_pair.hpp"
+#include "stability/bifurcation_tests.hpp"
+#include "stability/curve_tests.hpp"
 #include "support/branch_fixture.hpp"
 #include "support/linear_oscillator.hpp"
 

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "continuation/closed_branch.hpp"
-#include "special_points/bifurcation_tests.hpp"
-#include "special_points/recorded_branch.hpp"
-#include "special_points/user_value_test.hpp"
+#include "stability/bifurcation_tests.hpp"
+#include "stability/recorded_branch.hpp"
+#include "stability/user_value_test.hpp"
 #include "support/sampled_orbit.hpp"
 #include "support/test_system.hpp"
 

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <memory>
 
-#include "bvp/equilibrium_fold.hpp"
-#include "bvp/equilibrium_system.hpp"
-#include "bvp/hopf_pair.hpp"
-#include "constants/run_settings.hpp"
-#include "problem_type/problem_type.hpp"
+#include "orbit/equilibrium_fold.hpp"
+#include "orbit/equilibrium_system.hpp"
+#include "orbit/hopf_pair.hpp"
 #include "run/branch_setup.hpp"
+#include "settings/problem_type.hpp"
+#include "settings/run_settings.hpp"
 #include "stability/equilibrium_eigenvalues.hpp"
 #include "stability/lyapunov_coefficient.hpp"
 #include "support/branch_fixture.hpp"

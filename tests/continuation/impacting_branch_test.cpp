@@ -1,8 +1,8 @@
 // The impacting branch of the linear oscillator against its closed form and against forward integration.
 #include <catch2/catch.hpp>
 
-#include "simulation/orbit_flow.hpp"
-#include "special_points/user_value_test.hpp"
+#include "motion/orbit_flow.hpp"
+#include "stability/user_value_test.hpp"
 #include "support/branch_fixture.hpp"
 #include "support/linear_oscillator.hpp"
 #include "support/multiplier_sets.hpp"

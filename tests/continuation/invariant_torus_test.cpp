@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "continuation/planar_torus.hpp"
-#include "special_points/torus_contact_condition.hpp"
+#include "stability/torus_contact_condition.hpp"
 #include "stability/torus_multipliers.hpp"
 
 using namespace tchat;

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "../../problems/torus/torus.cpp"
-#include "bvp/rotation.hpp"
-#include "bvp/torus_system.hpp"
 #include "continuation/path_follower.hpp"
+#include "orbit/rotation.hpp"
+#include "orbit/torus_system.hpp"
 #include "support/sampled_orbit.hpp"
 #include "support/test_system.hpp"
 

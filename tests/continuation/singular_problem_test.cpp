@@ -1,10 +1,10 @@
 // Problems that leave a direction undetermined are refused with its name.
 #include <catch2/catch.hpp>
 
+#include "base/user_error.hpp"
 #include "run/branch_start.hpp"
 #include "support/branch_fixture.hpp"
 #include "support/linear_oscillator.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 using namespace tchat::test;

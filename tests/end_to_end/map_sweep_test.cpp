@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "end_to_end/bad_input.hpp"
-#include "sweep/sweep_file.hpp"
+#include "simulate/sweep_file.hpp"
 
 using namespace test_support;
 

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "end_to_end/bad_input.hpp"
-#include "sweep/sweep_file.hpp"
+#include "simulate/sweep_file.hpp"
 
 using namespace test_support;
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <utility>
 
+#include "base/user_error.hpp"
 #include "files/file_size_limit.hpp"
 #include "support/temporary_folder.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

@@ -5,10 +5,10 @@
 
 #include <catch2/catch.hpp>
 
+#include "base/user_error.hpp"
 #include "files/sample_solutions.hpp"
 #include "files/solution_file_reader.hpp"
 #include "support/temporary_folder.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 using namespace test_support;

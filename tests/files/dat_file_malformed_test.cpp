@@ -2,9 +2,9 @@
 #include <string>
 #include <vector>
 
+#include "base/user_error.hpp"
 #include "files/dat_file.hpp"
 #include "support/temporary_folder.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

@@ -8,8 +8,8 @@
 #include <functional>
 #include <random>
 
+#include "base/user_error.hpp"
 #include "support/temporary_folder.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 using test_support::message_of;

@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <string>
 
+#include "base/user_error.hpp"
 #include "files/file_size_limit.hpp"
 #include "files/temporary_file.hpp"
 #include "files/whole_file.hpp"
 #include "support/temporary_folder.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

@@ -9,13 +9,13 @@
 #include <string>
 #include <thread>
 
+#include "base/user_error.hpp"
 #include "files/diagnostics_file.hpp"
 #include "files/file_size_limit.hpp"
 #include "files/sample_orbits.hpp"
 #include "files/solution_file.hpp"
 #include "files/solution_file_reader.hpp"
 #include "support/temporary_folder.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

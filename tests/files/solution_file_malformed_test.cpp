@@ -2,10 +2,10 @@
 #include <string>
 #include <vector>
 
+#include "base/user_error.hpp"
 #include "files/sample_solutions.hpp"
 #include "files/solution_file_reader.hpp"
 #include "support/temporary_folder.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

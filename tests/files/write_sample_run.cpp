@@ -15,7 +15,7 @@
 #include "files/sample_orbits.hpp"
 #include "files/solution_file.hpp"
 #include "files/solution_file_reader.hpp"
-#include "tables/solution_tables.hpp"
+#include "files/solution_tables.hpp"
 
 using namespace tchat;
 

@@ -1,8 +1,8 @@
 // Constants files, both forms: what is accepted can be written in either form and read back to the same settings.
 
-#include "constants/constants_file.hpp"
-#include "constants/constants_writer.hpp"
 #include "fuzz_target.hpp"
+#include "settings/constants_file.hpp"
+#include "settings/constants_writer.hpp"
 
 using namespace tchat;
 

@@ -4,7 +4,7 @@
 
 #include "files/dat_file.hpp"
 #include "fuzz_target.hpp"
-#include "hybrid/parameter_vector.hpp"
+#include "model/parameter_vector.hpp"
 
 using namespace tchat;
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "formulas/translation.hpp"
 #include "fuzz_target.hpp"
+#include "plugin/translation.hpp"
 
 using namespace tchat;
 

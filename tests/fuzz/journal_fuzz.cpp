@@ -5,8 +5,8 @@
 #include <map>
 
 #include "fuzz_target.hpp"
-#include "sweep/attractor_numbering.hpp"
-#include "sweep/sweep_journal.hpp"
+#include "simulate/attractor_numbering.hpp"
+#include "simulate/sweep_journal.hpp"
 
 using namespace tchat;
 

@@ -2,11 +2,11 @@
 
 #include <vector>
 
-#include "constants/constants_file.hpp"
-#include "constants/constants_writer.hpp"
-#include "constants/settings_names.hpp"
+#include "base/words.hpp"
 #include "fuzz_target.hpp"
-#include "text/words.hpp"
+#include "settings/constants_file.hpp"
+#include "settings/constants_writer.hpp"
+#include "settings/settings_names.hpp"
 
 using namespace tchat;
 

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "constants/constant_value.hpp"
 #include "files/solution_file_reader.hpp"
 #include "fuzz_target.hpp"
+#include "settings/constant_value.hpp"
 
 using namespace tchat;
 

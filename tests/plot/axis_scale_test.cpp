@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "text/user_error.hpp"
+#include "base/user_error.hpp"
 
 using namespace tchat;
 

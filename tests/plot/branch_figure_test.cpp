@@ -5,13 +5,13 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "base/user_error.hpp"
 #include "plot/branch_columns.hpp"
 #include "plot/branch_end.hpp"
 #include "plot/data_file.hpp"
 #include "plot/layout.hpp"
 #include "plot/picture_styles.hpp"
 #include "support/temporary_folder.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

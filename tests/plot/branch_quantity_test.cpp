@@ -6,9 +6,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "base/user_error.hpp"
 #include "plot/branch_figure.hpp"
 #include "plot/column_expression.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "base/user_error.hpp"
 #include "support/linear_oscillator.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <set>
 
+#include "base/user_error.hpp"
 #include "plot/picture_styles.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "text/user_error.hpp"
+#include "base/user_error.hpp"
 
 using namespace tchat;
 

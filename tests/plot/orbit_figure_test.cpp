@@ -6,10 +6,10 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "base/user_error.hpp"
+#include "files/orbit_stability.hpp"
 #include "plot/multiplier_figure.hpp"
 #include "support/temporary_folder.hpp"
-#include "text/user_error.hpp"
-#include "traces/orbit_stability.hpp"
 
 using namespace tchat;
 using test_support::message_of;

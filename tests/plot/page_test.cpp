@@ -7,11 +7,11 @@
 #include <cmath>
 #include <limits>
 
+#include "base/user_error.hpp"
 #include "plot/branch_figure.hpp"
 #include "plot/page_json.hpp"
 #include "plot/restart_command.hpp"
 #include "support/temporary_folder.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

@@ -4,9 +4,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "base/user_error.hpp"
 #include "plot/gnuplot_script.hpp"
 #include "plot/thinned_points.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <limits>
 
+#include "base/user_error.hpp"
 #include "plot/colour_scale.hpp"
 #include "plot/sweep_colours.hpp"
 #include "support/temporary_folder.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

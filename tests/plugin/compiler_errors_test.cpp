@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "base/user_error.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin_folder.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

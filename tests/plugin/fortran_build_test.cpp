@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "base/user_error.hpp"
 #include "fortran_sources.hpp"
 #include "plugin/problem_library.hpp"
 #include "plugin_folder.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

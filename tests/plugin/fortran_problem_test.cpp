@@ -5,12 +5,12 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "base/user_error.hpp"
 #include "fortran_sources.hpp"
-#include "hybrid/derivative_check.hpp"
+#include "model/derivative_check.hpp"
 #include "plugin/exit_guard.hpp"
 #include "plugin/problem_library.hpp"
 #include "plugin_folder.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

@@ -10,10 +10,10 @@
 #include <cstdlib>
 #include <vector>
 
+#include "base/user_error.hpp"
 #include "plugin/precompiled_header.hpp"
 #include "plugin/problem_library.hpp"
 #include "plugin_folder.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <vector>
 
-#include "hybrid/parameter_vector.hpp"
-#include "hybrid/weighted_second.hpp"
+#include "base/user_error.hpp"
+#include "model/parameter_vector.hpp"
+#include "model/weighted_second.hpp"
 #include "plugin_folder.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

@@ -4,9 +4,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "motion/segment_flow.hpp"
 #include "published/makefile_run.hpp"
 #include "published/newton.hpp"
-#include "simulation/segment_flow.hpp"
 #include "support/test_system.hpp"
 
 #pragma push_macro("TCHAT_PROBLEM")

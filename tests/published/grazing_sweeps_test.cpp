@@ -7,7 +7,7 @@
 #include <map>
 
 #include "published/makefile_run.hpp"
-#include "sweep/sweep_file.hpp"
+#include "simulate/sweep_file.hpp"
 
 using namespace test_support;
 using namespace tchat;

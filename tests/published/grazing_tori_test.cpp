@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "end_to_end/workspace.hpp"
-#include "sweep/sweep_file.hpp"
+#include "simulate/sweep_file.hpp"
 
 using namespace test_support;
 using namespace tchat;

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "end_to_end/closed_forms.hpp"
+#include "motion/orbit_flow.hpp"
 #include "published/chain.hpp"
-#include "simulation/orbit_flow.hpp"
 #include "support/linear_oscillator.hpp"
 
 using namespace test_support;

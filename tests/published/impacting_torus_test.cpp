@@ -3,9 +3,9 @@
 #include <cmath>
 #include <filesystem>
 
+#include "motion/orbit_flow.hpp"
 #include "published/chain.hpp"
 #include "published/two_walls.hpp"
-#include "simulation/orbit_flow.hpp"
 #include "support/test_system.hpp"
 
 using namespace test_support;

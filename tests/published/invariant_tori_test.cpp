@@ -6,11 +6,11 @@
 #include <filesystem>
 
 #include "../../problems/langford/langford.cpp"
-#include "bvp/rotation.hpp"
+#include "motion/orbit_flow.hpp"
+#include "orbit/rotation.hpp"
 #include "published/chain.hpp"
 #include "published/smooth_motion.hpp"
 #include "published/two_walls.hpp"
-#include "simulation/orbit_flow.hpp"
 #include "support/test_system.hpp"
 
 using namespace test_support;

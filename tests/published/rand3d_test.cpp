@@ -6,8 +6,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "motion/orbit_flow.hpp"
 #include "published/makefile_run.hpp"
-#include "simulation/orbit_flow.hpp"
 #include "support/test_system.hpp"
 
 using namespace test_support;

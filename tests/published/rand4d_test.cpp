@@ -5,8 +5,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "motion/orbit_flow.hpp"
 #include "published/makefile_run.hpp"
-#include "simulation/orbit_flow.hpp"
 #include "support/test_system.hpp"
 
 using namespace test_support;

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "constants/sample_files.hpp"
 #include "published/chain.hpp"
+#include "settings/sample_files.hpp"
 
 using namespace test_support;
 namespace fs = std::filesystem;

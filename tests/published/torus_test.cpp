@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "../../problems/langford/langford.cpp"
+#include "motion/orbit_flow.hpp"
 #include "published/chain.hpp"
-#include "simulation/orbit_flow.hpp"
 #include "support/test_system.hpp"
 
 using namespace test_support;

@@ -9,7 +9,7 @@
 
 #include "end_to_end/bad_input.hpp"
 #include "published/chain.hpp"
-#include "sweep/sweep_file.hpp"
+#include "simulate/sweep_file.hpp"
 
 using namespace test_support;
 

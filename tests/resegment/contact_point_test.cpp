@@ -3,8 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "base/user_error.hpp"
 #include "support/mems_oscillator.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 using namespace tchat::test;

@@ -3,11 +3,11 @@
 
 #include <catch2/catch.hpp>
 
-#include "constants/constants_file.hpp"
+#include "base/user_error.hpp"
 #include "resegment/empty_segments.hpp"
 #include "resegment/new_settings.hpp"
+#include "settings/constants_file.hpp"
 #include "support/mems_oscillator.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 using namespace tchat::test;

@@ -2,11 +2,11 @@
 // normal form.
 #include <catch2/catch.hpp>
 
+#include "base/user_error.hpp"
 #include "continuation/path_follower.hpp"
 #include "run/branch_setup.hpp"
 #include "run/hopf_switch.hpp"
 #include "support/linear_oscillator.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 using namespace tchat::test;

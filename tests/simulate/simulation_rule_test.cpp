@@ -1,11 +1,11 @@
 // What a simulation watches and where it starts, by the command line and the constants.
 #include <catch2/catch.hpp>
 
+#include "base/user_error.hpp"
 #include "simulate/simulation_constants.hpp"
 #include "simulate/simulation_rule.hpp"
 #include "simulate/simulation_start.hpp"
 #include "support/test_system.hpp"
-#include "text/user_error.hpp"
 
 using namespace tchat;
 using namespace tchat::test;

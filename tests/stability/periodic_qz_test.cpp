@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "linear_algebra/dense_matrix.hpp"
+#include "linear/dense_matrix.hpp"
 #include "stability/periodic_qz.hpp"
 #include "support/multiplier_sets.hpp"
 #include "support/random_matrices.hpp"

@@ -2,8 +2,8 @@
 
 - a room of src includes itself, the rooms before it in the list src/rooms.txt, and nothing after it;
 - every folder of src that has sources is in that list;
-- IPS and ISW are compared with numbers by their owner alone, the rooms problem_type and problem_types;
-- what kind of solution something is, nobody asks but its owner, the room families: no questions by name (has_ring,
+- IPS and ISW are compared with numbers by their owner alone, the room kinds;
+- what kind of solution something is, nobody asks but its owner, the room kinds: no questions by name (has_ring,
   is_torus, is_point), no comparison of families, no cast to a class of equations, conditions or problem types.
 
     rooms_test.py SOURCE_FOLDER
@@ -13,7 +13,7 @@ import re
 import sys
 import tempfile
 
-OWNERS = ("problem_type", "problem_types")
+OWNER = "kinds"
 NOT_ROOMS = ("cmake", "docs")  # templates and examples of the pages
 
 
@@ -50,7 +50,7 @@ def includes_up(source):
 def comparisons(source):
     number = re.compile(r"\b(problem_type|branch_mode)(\(\))?\s*(==|!=|<=?|>=?)\s*-?\d"
                         r"|-?\d+\s*(==|!=)\s*[\w.]*\b(problem_type|branch_mode)\b")
-    return [f"{path}: {line.strip()}" for path, text in sources(source) if path.split(os.sep)[0] not in OWNERS
+    return [f"{path}: {line.strip()}" for path, text in sources(source) if path.split(os.sep)[0] != OWNER
             for line in text.splitlines() if number.search(line)]
 
 
@@ -60,26 +60,26 @@ def questions_about_families(source):
                           r"|(static|dynamic)_cast<(const )?\w*(System|Condition|Problem|Family|Multiplier|Pair|Fold)\s*[&*]>"
                           r"|(static|dynamic)_cast<const DefiningSystem&>")
     own_object = re.compile(r"static_cast<const \w+\s*\*>\(\w+\)")  # from the void* of an interface in C
-    return [f"{path}: {line.strip()}" for path, text in sources(source) if path.split(os.sep)[0] != "families"
+    return [f"{path}: {line.strip()}" for path, text in sources(source) if path.split(os.sep)[0] != OWNER
             for line in text.splitlines() if question.search(line) and not own_object.search(line)]
 
 
 def check_that_faults_are_found():
     with tempfile.TemporaryDirectory() as folder:
-        for room in ("bvp", "text", "attic"):
+        for room in ("orbit", "base", "attic"):
             os.mkdir(os.path.join(folder, room))
         with open(os.path.join(folder, "rooms.txt"), "w") as file:
-            file.write("# The rooms.\ntext | core\ncontract | headers\nbvp  | core\n")
-        with open(os.path.join(folder, "text", "words.cpp"), "w") as file:
-            file.write('#include "bvp/orbit.hpp"\nbool f(int problem_type) { return problem_type == 180; }\n')
-        with open(os.path.join(folder, "bvp", "orbit.hpp"), "w") as file:
-            file.write('#include "text/words.hpp"\n#include "tchat/problem.h"\n')
-        assert includes_up(folder) == ["text/words.cpp includes bvp/orbit.hpp, of a room above it"]
+            file.write("# The rooms.\nbase | core\ncontract | headers\norbit  | core\n")
+        with open(os.path.join(folder, "base", "words.cpp"), "w") as file:
+            file.write('#include "orbit/orbit.hpp"\nbool f(int problem_type) { return problem_type == 180; }\n')
+        with open(os.path.join(folder, "orbit", "orbit.hpp"), "w") as file:
+            file.write('#include "base/words.hpp"\n#include "tchat/problem.h"\n')
+        assert includes_up(folder) == ["base/words.cpp includes orbit/orbit.hpp, of a room above it"]
         with open(os.path.join(folder, "attic", "chair.cpp"), "w") as file:
             file.write("int chairs = 1;\n")
         assert "attic/chair.cpp is in no room of rooms.txt" in includes_up(folder)
         assert len(comparisons(folder)) == 1
-        with open(os.path.join(folder, "bvp", "orbit.cpp"), "w") as file:
+        with open(os.path.join(folder, "orbit", "orbit.cpp"), "w") as file:
             file.write("bool g(int n) { return is_torus(n); }\n"
                        "auto& h(const DefiningSystem& x) { return static_cast<const TorusSystem&>(x); }\n")
         assert len(questions_about_families(folder)) == 2

@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "bvp/mesh_adaptation.hpp"
-#include "bvp/periodic_orbit_system.hpp"
 #include "continuation/continuation_run.hpp"
+#include "orbit/mesh_adaptation.hpp"
+#include "orbit/periodic_orbit_system.hpp"
 #include "stability/floquet_multipliers.hpp"
 
 namespace tchat::test {

@@ -5,8 +5,8 @@
 #include <Eigen/Core>
 #include <tchat/problem.hpp>
 
-#include "hybrid/hybrid_system.hpp"
-#include "hybrid/index_vector.hpp"
+#include "model/hybrid_system.hpp"
+#include "model/index_vector.hpp"
 
 #pragma push_macro("TCHAT_PROBLEM")
 #undef TCHAT_PROBLEM

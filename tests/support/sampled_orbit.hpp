@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
-#include "bvp/orbit.hpp"
-#include "simulation/orbit_flow.hpp"
+#include "motion/orbit_flow.hpp"
+#include "orbit/orbit.hpp"
 
 namespace tchat::test {
 

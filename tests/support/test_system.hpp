@@ -3,7 +3,7 @@
 
 #include <tchat/problem.hpp>
 
-#include "hybrid/hybrid_system.hpp"
+#include "model/hybrid_system.hpp"
 
 namespace tchat::test {
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "bvp/periodic_orbit_system.hpp"
 #include "continuation/continuation_run.hpp"
-#include "hybrid/hybrid_system.hpp"
+#include "model/hybrid_system.hpp"
+#include "orbit/periodic_orbit_system.hpp"
 #include "tchat/problem.hpp"
 
 namespace {

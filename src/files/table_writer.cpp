@@ -1,0 +1,99 @@
+#include "files/table_writer.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+
+namespace tchat {
+
+namespace {
+
+/// Lists have two fields for each number, the real and the imaginary part.
+class CsvWriter final : public TableWriter {
+ public:
+  explicit CsvWriter(std::ostream& out) : out_(out) {}
+
+  void begin(const std::vector<TableColumn>& columns) override {
+    columns_ = columns;
+    std::vector<std::string> fields;
+    for (const TableColumn& column : columns) {
+      if (column.element.empty()) fields.push_back(csv_field(column.name));
+      for (std::size_t k = 1; k <= column.most; ++k)
+        fields.insert(fields.end(),
+                      {fmt::format("{}{}_re", column.element, k), fmt::format("{}{}_im", column.element, k)});
+    }
+    out_ << csv_line(fields);
+  }
+
+  void row(const std::vector<TableValue>& values) override {
+    std::vector<std::string> fields;
+    for (std::size_t c = 0; c < values.size(); ++c) {
+      if (const auto* cell = std::get_if<TableCell>(&values[c])) {
+        fields.push_back(csv_field(*cell));
+        continue;
+      }
+      const auto& list = std::get<ComplexList>(values[c]);
+      for (std::size_t k = 0; k < columns_[c].most; ++k) {
+        fields.push_back(k < list.size() ? csv_field(list[k].real()) : "");
+        fields.push_back(k < list.size() ? csv_field(list[k].imag()) : "");
+      }
+    }
+    out_ << csv_line(fields);
+  }
+
+ private:
+  std::ostream& out_;
+  std::vector<TableColumn> columns_;
+};
+
+/// An array of objects; lists are arrays of pairs [re, im].
+class JsonWriter final : public TableWriter {
+ public:
+  explicit JsonWriter(std::ostream& out) : out_(out) {}
+
+  void begin(const std::vector<TableColumn>& columns) override {
+    for (const TableColumn& column : columns) keys_.push_back(json_value(column.name));
+  }
+
+  void row(const std::vector<TableValue>& values) override {
+    std::vector<std::string> members;
+    for (std::size_t c = 0; c < values.size(); ++c)
+      members.push_back(
+          fmt::format("{}: {}", keys_[c], std::visit([](const auto& value) { return json(value); }, values[c])));
+    out_ << (is_first_ ? "[\n" : ",\n") << fmt::format("{{{}}}", fmt::join(members, ", "));
+    is_first_ = false;
+  }
+
+  void end() override { out_ << (is_first_ ? "[\n]\n" : "\n]\n"); }
+
+ private:
+  static std::string json(const TableCell& cell) { return json_value(cell); }
+  static std::string json(const ComplexList& list) {
+    if (list.empty()) return "null";
+    std::vector<std::string> pairs;
+    for (const std::complex<double>& value : list)
+      pairs.push_back(fmt::format("[{}, {}]", json_value(value.real()), json_value(value.imag())));
+    return fmt::format("[{}]", fmt::join(pairs, ", "));
+  }
+
+  std::ostream& out_;
+  std::vector<std::string> keys_;
+  bool is_first_ = true;
+};
+
+template <class Writer>
+std::unique_ptr<TableWriter> make(std::ostream& out) {
+  return std::make_unique<Writer>(out);
+}
+
+}  // namespace
+
+std::span<const TableFormatName> table_formats() {
+  static constexpr std::array formats{
+      TableFormatName{"csv", "CSV", make<CsvWriter>},
+      TableFormatName{"json", "JSON: an array of objects, one a row", make<JsonWriter>}};
+  return formats;
+}
+
+}  // namespace tchat

@@ -1,0 +1,117 @@
+#include "kinds/ring_analysis.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "continuation/branch_limits.hpp"
+#include "continuation/homoclinic_limit.hpp"
+#include "kinds/families.hpp"
+#include "model/identity_jump.hpp"
+#include "orbit/ring_system.hpp"
+#include "orbit/unfolded_system.hpp"
+#include "stability/bifurcation_tests.hpp"
+#include "stability/equilibrium_eigenvalues.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// An orbit whose period is a smaller part of its start's is the empty orbit that every event surface has: x_s(0) =
+/// x_s(1) with T_s = 0 for all s satisfies every condition where h = 0 and g(x) = x.
+constexpr double vanishing_period = 1e-5;
+/// An orbit whose states all move by a smaller part of what they did at the start, or by no more than Newton's method
+/// ends with, is an equilibrium.
+constexpr double vanishing_range = 1e-4;
+constexpr double no_range = 1e-7;
+
+/// The angular frequency with which an orbit that has shrunk to a point goes around it, if the flow is smooth there and
+/// the period is that of the linear oscillation.
+std::optional<double> hopf_frequency(const DefiningSystem& system, const Orbit& x) {
+  constexpr double accuracy = 1e-2;
+  const Signature& signature = system.signature();
+  const bool smooth = std::all_of(signature.begin(), signature.end(), [&](const IndexVector& index) {
+    return index.field == signature.front().field && is_identity_jump(system.system(), index);
+  });
+  if (!smooth) return std::nullopt;
+  const FloquetMultipliers eigenvalues = equilibrium_eigenvalues(system, x);
+  const EigenvaluePair pair = hopf_pairs(eigenvalues.values).nearest;
+  const double omega = std::abs(pair.first.imag());
+  const bool same_period = std::abs(omega * x.period() - 2.0 * std::numbers::pi) < accuracy * 2.0 * std::numbers::pi;
+  return pair.is_oscillation() && pair.distance < accuracy && same_period ? std::optional(omega) : std::nullopt;
+}
+
+}  // namespace
+
+const FamilyFacts& RingAnalysis::facts() const { return periodic_orbit_family().facts(); }
+
+bool RingAnalysis::has_fixed_phase() const {
+  const Signature& signature = system_.signature();
+  return std::none_of(signature.begin(), signature.end(),
+                      [](const IndexVector& index) { return index.event == no_function; });
+}
+
+SpecialPoint RingAnalysis::shrunk(const Orbit& x) const {
+  const std::optional<double> omega = hopf_frequency(system_, x);
+  const bool is_family = system_.conserved_quantities() > 0;  // at an equilibrium that need not change its stability
+  const std::string what = is_family ? "linear oscillation" : "Hopf bifurcation";
+  return {omega && !is_family ? PointType::hopf : PointType::end,
+          {},
+          false,
+          fmt::format("the orbit has shrunk to a point, {}: an equilibrium, where the branch of periodic orbits ends{}",
+                      state_text(system_.system(), x, x.start(0)),
+                      omega ? fmt::format(" ({}, omega = {:.6g})", what, *omega) : "")};
+}
+
+std::string RingAnalysis::passed_infinity(const PathPoint& from, const PathPoint& to, double ds) const {
+  const std::string what = tchat::passed_infinity(from, to, ds);
+  return what.empty() ? undetermined_duration(system_, to.orbit) : what;
+}
+
+std::string RingAnalysis::passed_zero(const Orbit& from, const Orbit& to) const { return tchat::passed_zero(from, to); }
+
+std::string RingAnalysis::passed_zero_segment(const Orbit& from, const Orbit& to) const {
+  return tchat::passed_zero_segment(from, to);
+}
+
+std::string RingAnalysis::tendency(const Orbit& x, const PeriodGrowth& growth,
+                                   const std::string& parameter_name) const {
+  return homoclinic_limit(system_, x, growth, parameter_name);
+}
+
+std::string RingAnalysis::why_no_solution(const Orbit& first, const Orbit& start, const std::string& source) const {
+  if (!(first.period() > vanishing_period * std::abs(start.period())))
+    return fmt::format(
+        "Newton left the start from {}, of period {:.6g}, for an orbit of period {:.1e}: a point, no orbit; "
+        "the start is too far from an orbit of this signature or the mesh too coarse, so improve the start "
+        "or raise NTST",
+        source, start.period(), first.period());
+  const Eigen::VectorXd least =
+      (vanishing_range * state_ranges(start)).cwiseMax(no_range * (1.0 + first.states.cwiseAbs().maxCoeff()));
+  if ((state_ranges(first).array() > least.array()).any()) return "";
+  return fmt::format(
+      "Newton left the start from {} for an orbit on which no state moves by more than {:.1e}: an "
+      "equilibrium, no orbit; the start is too far from an orbit of this signature, or there is none at "
+      "these parameters",
+      source, state_ranges(first).maxCoeff());
+}
+
+std::string RingAnalysis::start_advice(const Orbit& start) const {
+  const bool rests = !system_.has_event(0) && (start.states.colwise() - start.states.col(0)).isZero(0.0);
+  return rests
+             ? "All states of the start are equal. Without a section (GCHIND = [0]) the start must be a closed orbit; "
+               "IPS = 1 continues equilibria."
+             : BranchAnalysis::start_advice(start);
+}
+
+std::unique_ptr<BranchAnalysis> RingSystem::make_analysis(const OrbitShape& shape) const {
+  return std::make_unique<RingAnalysis>(*this, shape);
+}
+
+std::unique_ptr<BranchAnalysis> UnfoldedSystem::make_analysis(const OrbitShape& shape) const {
+  return ring_->make_analysis(shape);
+}
+
+}  // namespace tchat

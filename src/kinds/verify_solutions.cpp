@@ -1,0 +1,290 @@
+#include "kinds/verify_solutions.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "base/folded.hpp"
+#include "base/user_error.hpp"
+#include "files/diagnostics_file_reader.hpp"
+#include "files/labelled_solution.hpp"
+#include "files/run_file_names.hpp"
+#include "files/run_request.hpp"
+#include "files/solution_file_reader.hpp"
+#include "kinds/critical_label.hpp"
+#include "kinds/orbit_check.hpp"
+#include "orbit/admissibility.hpp"
+#include "orbit/discretisation_error.hpp"
+#include "plugin/exit_guard.hpp"
+#include "plugin/named_parameters.hpp"
+#include "plugin/plugin_build.hpp"
+#include "plugin/problem_library.hpp"
+#include "plugin/problem_setup.hpp"
+#include "run/orbit_start.hpp"
+#include "settings/constant_value.hpp"
+#include "settings/constants_file.hpp"
+#include "settings/point_type.hpp"
+#include "settings/problem_type.hpp"
+#include "settings/recorded_problem.hpp"
+
+namespace tchat {
+
+namespace {
+
+std::vector<LabelledSolution> chosen(const VerifyRequest& request, const SolutionFile& file, const std::string& path) {
+  if (request.labels.empty()) return file.solutions;
+  std::vector<LabelledSolution> result;
+  for (const std::string& word : request.labels)
+    result.push_back(find_solution(file.solutions, read_label(word), path));
+  return result;
+}
+
+/// Labelled points of the d-file; empty when there is none.
+std::map<int, DiagnosticPoint> recorded_points(const std::string& path) {
+  std::map<int, DiagnosticPoint> result;
+  if (path.empty() || !std::filesystem::exists(path)) return result;
+  for (DiagnosticPoint& point : read_diagnostics_file(path))
+    if (point.label > 0) result[point.label] = std::move(point);
+  return result;
+}
+
+const char* word_for(Defect defect) {
+  switch (defect) {
+    case Defect::not_integrated:
+      return "not integrated";
+    case Defect::undecided:
+      return "undecided: errors grow too much";
+    case Defect::duration:
+      return "no positive duration";
+    case Defect::integral:
+      return "integral condition";
+    case Defect::state:
+      return "state";
+    case Defect::time:
+      return "time";
+    case Defect::event:
+      return "event";
+    case Defect::critical:
+      return "no critical multiplier";
+    default:
+      return "multipliers";
+  }
+}
+
+/// What is seen of one label.
+struct Verdict {
+  bool is_right = true;
+  bool is_inadmissible = false;  // as stored
+};
+
+struct Largest {
+  double value = 0.0;
+  std::string where = "none";
+  void take(double other, const std::string& place) {
+    if (!(other > value)) return;
+    value = other;
+    where = place;
+  }
+};
+
+/// Do folds and branch points of this run have the multiplier 1, whatever was found out while it ran?
+bool is_in_parameter(const RunSettings& settings) {
+  if (!settings.held.empty()) return false;
+  return !settings.conserved.empty() || !is_monitor(settings, settings.free_parameters.front());
+}
+
+class Table {
+ public:
+  Table(const HybridSystem& system, const RunSettings& settings, double tolerance, std::ostream& screen)
+      : system_(system),
+        settings_(settings),
+        family_(family_of(settings.problem_type)),
+        tolerance_(tolerance),
+        screen_(screen) {
+    screen_ << " LAB  TY SEG              T    STATE     TIME   GROWTH  MULTIPL.  CRITICAL  EVENT\n";
+  }
+
+  Verdict add(const LabelledSolution& solution, const DiagnosticPoint* recorded) {
+    const std::string why_not = family_.mismatch(solution, settings_);
+    if (!why_not.empty()) {
+      screen_ << fmt::format("{:>4}  {:<2}  not verified: {}\n", solution.label, type_name(solution), why_not);
+      return {false, false};
+    }
+    const Orbit x = orbit_of(solution);
+    const auto stored = recorded != nullptr ? recorded->multipliers : std::vector<std::complex<double>>{};
+    const OrbitCheck check = family_.check(
+        system_, settings_, x, stored, tolerance_, [&](const std::vector<std::complex<double>>& computed) {
+          return critical_multipliers(solution, stored, computed, is_in_parameter(settings_));
+        });
+    const bool is_inadmissible = recorded != nullptr ? !recorded->admissible : has_inadmissibilities(x);
+    return rows(solution, check, is_inadmissible);
+  }
+
+  std::string worst() const {
+    const std::string critical =
+        critical_.where == "none" ? "" : fmt::format(", critical ones {:.1e} ({})", critical_.value, critical_.where);
+    const std::string integral =
+        integral_.where == "none" ? ""
+                                  : fmt::format(", integral conditions {:.1e} ({})", integral_.value, integral_.where);
+    return folded(fmt::format("Largest defects{}: states {:.1e} ({}), times {:.1e} ({}), multipliers {:.1e} ({}){}{}.",
+                              family_.checked_trajectories(), state_.value, state_.where, time_.value, time_.where,
+                              multipliers_.value, multipliers_.where, critical, integral));
+  }
+
+ private:
+  Orbit orbit_of(const LabelledSolution& solution) const {
+    const auto segments = static_cast<int>(solution.states.rows() / settings_.dimension);
+    return orbit_from_solution(in_layout(solution, system_.layout()),
+                               stored_shape(solution, settings_.dimension, segments), {}, "the q-file")
+        .orbit;
+  }
+
+  bool has_inadmissibilities(const Orbit& x) const {
+    Signature signature;  // of all returns
+    std::vector<std::vector<int>> monitored;
+    for (std::size_t s = 0; s < static_cast<std::size_t>(x.shape.segments); ++s) {
+      const SegmentSettings& segment = settings_.segments[s % settings_.segments.size()];
+      signature.push_back(segment.index);
+      monitored.push_back(segment.monitor);
+    }
+    const CollocationRule rule(x.shape.collocation);
+    const double error = estimated_error(system_, signature, x, rule);
+    return !inadmissibilities(system_, signature, monitored, x, rule, error).empty();
+  }
+
+  std::string event_name(int event) const { return system_.function_name(FunctionKind::event, event); }
+
+  /// "front, but end of slip at t = 0.31 comes first"
+  std::string events(const OrbitCheck& check, std::size_t s) const {
+    const SegmentCheck& segment = check.segments[s];
+    const int event = settings_.segments[s].index.event;
+    std::string text = event == no_function ? "-" : event_name(event);
+    for (const EventMet& met : segment.wrong)
+      text += fmt::format(", but {} at t = {:.6g} comes first (depth {:.1e})", event_name(met.event),
+                          met.time > 1e-9 * check.period ? met.time : 0.0, met.depth);
+    if (segment.leaves_surface) text += ", crossed from below";
+    if (check.durations[s] < 0.0 && segment.wrong.empty()) text += ", negative duration";
+    if (!segment.passed.empty() && segment.wrong.empty())
+      text += fmt::format(", passes {} at t = {:.6g}{}", event_name(segment.passed.front().event),
+                          segment.passed.front().time,
+                          segment.passed.size() > 1 ? fmt::format(" and {} more", segment.passed.size() - 1) : "");
+    return segment.message.empty() ? text : segment.message;
+  }
+
+  /// Of an orbit for which none are stored, or which has none.
+  static std::string multipliers_of(const OrbitCheck& check) {
+    std::string list;
+    for (const std::complex<double>& mu : check.multipliers)
+      list += fmt::format(
+          "{}{:.8g}{}", list.empty() ? "" : ", ", mu.real(),
+          mu.imag() == 0.0 ? "" : fmt::format(" {} {:.8g}i", mu.imag() < 0 ? '-' : '+', std::abs(mu.imag())));
+    return fmt::format("{:12}multipliers: {}\n", "", list.empty() ? "not determined" : list);
+  }
+
+  Verdict rows(const LabelledSolution& solution, const OrbitCheck& check, bool is_inadmissible) {
+    Verdict verdict;
+    for (std::size_t s = 0; s < check.segments.size(); ++s) {
+      const SegmentCheck& segment = check.segments[s];
+      std::vector<Defect> defects = defects_of(check, s, tolerance_);
+      const bool excused = is_inadmissible && std::erase(defects, Defect::event) > 0;
+      if (s == 0 && are_multipliers_wrong(check, tolerance_)) defects.push_back(Defect::multipliers);
+      if (s == 0 && are_critical_ones_wrong(check, tolerance_)) defects.push_back(Defect::critical);
+      verdict.is_right = verdict.is_right && defects.empty();
+      verdict.is_inadmissible = verdict.is_inadmissible || excused;
+      std::vector<const char*> words;
+      for (const Defect defect : defects) words.push_back(word_for(defect));
+      const std::string end = !words.empty() ? fmt::format("  << {}", fmt::join(words, ", "))
+                              : excused      ? "  inadmissible as stored"
+                                             : "";
+      const std::string place = fmt::format("label {}, segment {}", solution.label, s + 1);
+      const double time = segment.time_defect / check.period;
+      state_.take(segment.state_defect, place);
+      time_.take(time, place);
+      const std::string name = s == 0 ? fmt::format("{:>4}  {:<2}", solution.label, type_name(solution)) : "";
+      const auto once = [s](const std::optional<double>& value) {
+        return s == 0 && value ? fmt::format("{:.1e}", *value) : "";
+      };
+      screen_ << fmt::format("{:<8}{:>4}{:>15.7g}{:>9.1e}{:>9.1e}{:>9.1e}{:>10}{:>10}  {}{}\n", name, s + 1,
+                             check.durations[s], segment.state_defect, time, segment.growth,
+                             once(check.multiplier_difference), once(check.critical_difference), events(check, s), end);
+    }
+    if (!check.multiplier_difference && check.computes_multipliers) screen_ << multipliers_of(check);
+    if (check.multiplier_difference)
+      multipliers_.take(*check.multiplier_difference, fmt::format("label {}", solution.label));
+    if (check.integral_defect) integral_.take(*check.integral_defect, fmt::format("label {}", solution.label));
+    if (check.critical_difference) critical_.take(*check.critical_difference, fmt::format("label {}", solution.label));
+    return verdict;
+  }
+
+  const HybridSystem& system_;
+  const RunSettings& settings_;
+  const SolutionFamily& family_;
+  double tolerance_;
+  std::ostream& screen_;
+  Largest state_, time_, multipliers_, critical_, integral_;
+};
+
+/// Labels in a summary.
+constexpr std::size_t most_named = 20;
+
+std::string summary(const std::string& path, const std::vector<int>& wrong, std::size_t labels, int inadmissible,
+                    double tolerance) {
+  const std::string stored =
+      inadmissible > 0 ? fmt::format(" ({} inadmissible, as the run had found)", inadmissible) : "";
+  if (wrong.empty())
+    return fmt::format("{}: {} label{} agree{} with forward integration to {:g}{}.\n", path, labels,
+                       labels == 1 ? "" : "s", labels == 1 ? "s" : "", tolerance, stored);
+  const std::size_t named = std::min(wrong.size(), most_named);
+  return fmt::format("{}: {} of {} labels beyond the tolerance {:g}{}: {}{}\n", path, wrong.size(), labels, tolerance,
+                     stored, fmt::join(wrong.begin(), wrong.begin() + static_cast<std::ptrdiff_t>(named), ", "),
+                     wrong.size() > named ? ", ..." : "");
+}
+
+}  // namespace
+
+bool verify_solutions(const VerifyRequest& request, std::ostream& screen, std::ostream& warnings) {
+  if (!(request.tolerance > 0.0 && request.tolerance < 1.0))
+    throw UserError(
+        fmt::format("--tolerance {:g}: a number between 0 and 1 is needed, such as 1e-6", request.tolerance));
+  const std::string path = resolve_solution_path(request.solutions);
+  const SolutionFile file = read_solution_file(path);
+  const std::vector<LabelledSolution> solutions = chosen(request, file, path);
+  const std::string constants = constants_of_run(request.constants, path);
+  RunSettings settings = read_constants_file(constants);
+
+  if (const std::string why = family_of(settings.problem_type).why_unverifiable(settings); !why.empty())
+    throw UserError(fmt::format("{}: {}", path, why));
+
+  const std::string plugin =
+      resolve_plugin_of_run(request.problem, run_path(path), recorded_problem(settings, constants), warnings);
+  const ExitGuard guard(plugin);
+  const ProblemLibrary library(plugin, [&] { return problem_sizes(settings); });
+  const HybridSystem& system = library.system();
+  resolve_names(settings, system);
+  check_settings_against(system, settings, {constants});
+  for (const std::string& warning : file.warnings) warnings << "tchat: warning: " << warning << '\n';
+
+  const std::string diagnostics = sibling_path(path, 'd');
+  const std::map<int, DiagnosticPoint> recorded = recorded_points(diagnostics);
+  if (recorded.empty() && has_multipliers(settings.problem_type))
+    warnings << fmt::format("tchat: warning: there is no {}: multipliers are compared with nothing\n",
+                            diagnostics.empty() ? "d-file" : diagnostics);
+  Table table(system, settings, request.tolerance, screen);
+  std::vector<int> wrong;
+  int inadmissible = 0;
+  for (const LabelledSolution& solution : solutions) {
+    const auto found = recorded.find(solution.label);
+    const Verdict verdict = table.add(solution, found != recorded.end() ? &found->second : nullptr);
+    if (!verdict.is_right) wrong.push_back(solution.label);
+    inadmissible += verdict.is_inadmissible ? 1 : 0;
+  }
+  screen << table.worst() << summary(path, wrong, solutions.size(), inadmissible, request.tolerance);
+  return wrong.empty();
+}
+
+}  // namespace tchat

@@ -1,0 +1,83 @@
+/// LU of a sparse matrix whose rows come in groups along a chain or a ring, by frontal matrices [I. S. Duff, J. K.
+/// Reid, SIAM J. Sci. Stat. Comput. 5 (1984) 633].
+///
+/// A frontal matrix is a dense block of the rows of neighbouring groups. As soon as all rows are together in which a
+/// column has entries, the column is eliminated with pivoting among the rows there (partial_lu.hpp), and what is left
+/// of the rows goes into the frontal matrix of twice as many groups: halves are made from their halves, as with the
+/// mesh intervals of a segment, and for the same reason (segment_elimination.hpp). The last one has what is left, the
+/// border rows among it; these may have entries in all columns, are eliminated on the way and never chosen as pivots
+/// before. Where a group touches its neighbours only, work is linear in the number of groups.
+///
+/// Rows are divided by their sums of magnitudes first. All arrays are allocated when the object is made.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "linear/aligned_allocator.hpp"
+
+namespace tchat {
+
+class FrontalLu {
+ public:
+  /// The pattern is given as to SparseLu; `groups` has for each row of the matrix the number of its group, 0, 1, ...
+  /// along the chain, or `border_row`. Nothing where columns are shared by groups so far apart that the blocks would be
+  /// much larger than the matrix.
+  static std::optional<FrontalLu> make(int size, std::span<const int> rows, std::span<const int> columns,
+                                       std::span<const int> groups);
+  static constexpr int border_row = -1;
+
+  /// False when the columns of a frontal matrix are nearly dependent, which they may be where the matrix is far from
+  /// singular (not those of the last one: there it is the matrix that is); or when a value is not finite.
+  bool factorize(std::span<const double> values);
+
+  /// x = A^-1 b, or A^-T b. x and b are different arrays.
+  void solve(const double* b, double* x);
+  void solve_transposed(const double* b, double* x);
+
+  /// Its sign and the logarithm to base 2 of its magnitude, from the factors.
+  std::pair<int, double> determinant() const;
+
+ private:
+  /// Entry number `value` of those given to factorize() belongs at `place` of the block.
+  struct Entry {
+    int value, place;
+  };
+  /// What the rows that a front has left are in the front that takes them: its columns there.
+  struct Child {
+    int front;
+    std::vector<int> columns;
+  };
+  struct Front {
+    std::vector<Child> children;  // whose rows come first, then
+    std::vector<int> own_rows;
+    std::vector<int> columns;  // those eliminated here first
+    std::vector<Entry> entries;
+    int rows = 0, border = 0, pivots = 0, width = 0;
+    std::ptrdiff_t block = 0, right = 0, swaps = 0;  // where its own begin
+    int left() const { return rows - pivots; }
+  };
+
+  FrontalLu() = default;
+  int parity() const;
+  int find_parity_without_exchanges() const;
+  class Plan;
+  void fetch_front(std::size_t number) const;
+  void put_children(const Front& front, double* block) const;
+  bool eliminate_pivots(const Front& front, double* block);
+  void gather_right(const Front& front, const double* b, double* right) const;
+  void scatter_weights(const Front& front, const double* weights, double* x);
+
+  int size_ = 0;
+  std::vector<Front> fronts_;  // each after its children
+  std::vector<int> entry_rows_;
+  std::vector<double> scales_;                                     // of rows
+  std::vector<double, AlignedAllocator<double>> blocks_, rights_;  // of fronts
+  std::vector<double> local_, known_, column_sizes_;
+  std::vector<int> swaps_;
+  int parity_without_exchanges_ = 1;
+};
+
+}  // namespace tchat

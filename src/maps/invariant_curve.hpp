@@ -1,0 +1,97 @@
+/// The closed invariant curve of a torus on a section, in the phase phi in which the return map is a rotation:
+///
+///     x = u(phi),   P(u(phi)) = u(phi + rho),   u(phi) = w phi + a_0 + sum_l a_l cos 2 pi l phi + b_l sin 2 pi l phi
+///
+/// w is zero but for states that are angles: those grow by 2 pi (or - 2 pi) a turn of phi. A curve may come from
+/// anywhere; here it is fitted to points of a simulation.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "maps/trigonometric_series.hpp"
+
+namespace tchat {
+
+class InvariantCurve {
+ public:
+  /// `periodic`: u - w phi; `winding`: w, n.
+  InvariantCurve(double rotation, Eigen::VectorXd winding, TrigonometricSeries periodic);
+
+  double rotation() const { return rotation_; }  ///< rho, in (0, 1)
+  Eigen::Index dimension() const { return periodic_.rows(); }
+  int harmonics() const { return periodic_.harmonics(); }
+  const Eigen::VectorXd& winding() const { return winding_; }
+  bool is_angle(Eigen::Index state) const { return winding_(state) != 0.0; }
+
+  /// u and its derivatives by phi; any phi.
+  Eigen::VectorXd at(double phi) const { return derivative(phi, 0); }
+  Eigen::VectorXd derivative(double phi, int order = 1) const;
+  /// x - y, in angles the way round that is shorter.
+  Eigen::VectorXd difference(const Eigen::VectorXd& x, const Eigen::VectorXd& y) const;
+  /// Range of each state along the curve; 2 pi for angles; n.
+  const Eigen::VectorXd& extent() const { return extent_; }
+
+ private:
+  double rotation_;
+  Eigen::VectorXd winding_;
+  TrigonometricSeries periodic_;
+  Eigen::VectorXd extent_;
+};
+
+struct CurveSettings {
+  std::vector<Eigen::Index> angles;  ///< states, from 0, that count modulo 2 pi
+  int max_harmonics = 256;
+  double tolerance = 1e-6;  ///< of the fit, relative to the extent of the curve
+};
+
+struct FittedCurve {
+  InvariantCurve curve;
+  double error = 0.0;           ///< largest distance of a point from u(k rho), relative to the extents
+  double rotation_error = 0.0;  ///< what the points leave open
+};
+
+/// Points in the order in which a motion on the torus met the section, n x K. The rotation number is a weighted mean of
+/// the lifted angle about the curve's centre, in the plane of its largest extents (or of the first of `angles`), then
+/// refined with the coefficients by least squares. Throws UserError, `source` in front, when the points are too few,
+/// lie on no closed curve to the tolerance, or repeat themselves (a periodic orbit).
+FittedCurve fit_invariant_curve(const Eigen::MatrixXd& points, const CurveSettings& settings,
+                                const std::string& source);
+
+/// Which point of a curve stands for a point near it (the projection pi_Gamma of (3.19), (3.35), (4.12)).
+class CurveProjection {
+ public:
+  /// What x and its point on the curve have in common.
+  enum class Kind {
+    nearest,  ///< the distance, states divided by their extents, is least
+    angle,    ///< the angle of one state, or of a pair of states
+  };
+  /// The nearest point.
+  explicit CurveProjection(const InvariantCurve& curve);
+  /// The point with the same angle: of state `first` (counted modulo 2 pi), or of the direction (first, second),
+  /// `first` being the sine. Throws UserError when the curve is no graph over that angle.
+  CurveProjection(const InvariantCurve& curve, Eigen::Index first, Eigen::Index second = -1);
+
+  /// phi in [0, 1).
+  double phase(const Eigen::VectorXd& x) const;
+  /// d phi / d x at a point x that is projected to phi, n.
+  Eigen::RowVectorXd gradient(const Eigen::VectorXd& x, double phi) const;
+
+ private:
+  double residual(const Eigen::VectorXd& x, double phi) const;
+  double slope(const Eigen::VectorXd& x, double phi) const;
+  double angle(const Eigen::VectorXd& x) const;
+  double nearest_sample(const Eigen::VectorXd& x) const;
+  double sample_of_angle(double angle) const;
+  Eigen::RowVectorXd angle_gradient(const Eigen::VectorXd& x) const;
+
+  InvariantCurve curve_;
+  Kind kind_;
+  Eigen::Index first_ = -1, second_ = -1;
+  Eigen::VectorXd weights_;     // 1 / extent^2
+  Eigen::MatrixXd samples_;     // u at equal phases
+  std::vector<double> angles_;  // of the samples in turns, going on from one to the next, and once round
+};
+
+}  // namespace tchat

@@ -1,0 +1,38 @@
+/// A value of a sweep by iterating a map.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "maps/map_attractor.hpp"
+#include "maps/map_model.hpp"
+#include "simulate/sweep_grid.hpp"
+#include "simulate/sweep_point.hpp"
+
+namespace tchat {
+
+/// The same for all values and workers.
+struct MapSamplerSetup {
+  std::vector<SweepTarget> over;
+  std::vector<Eigen::VectorXd> starts;  ///< of start 1, 2, ...
+  MapIteration iteration;               ///< without `interrupted`
+};
+
+/// One for each worker, with its own map. `setup` and `model` outlive it.
+class MapSampler {
+ public:
+  MapSampler(const MapSamplerSetup& setup, const MapModel& model, std::shared_ptr<const IteratedMap> map)
+      : setup_(setup), model_(model), map_(std::move(map)) {}
+
+  /// Throws SampleInterrupted when `interrupted` says so.
+  AttractorSample operator()(const SweepPoint& point, const std::function<bool()>& interrupted) const;
+
+ private:
+  const MapSamplerSetup& setup_;
+  const MapModel& model_;
+  std::shared_ptr<const IteratedMap> map_;
+};
+
+}  // namespace tchat

@@ -1,0 +1,38 @@
+/// A torus that a simulation goes round, as the start of a continuation: the orbits of orbit/torus_system.hpp from
+/// points of a section.
+#pragma once
+
+#include <vector>
+
+#include "maps/invariant_curve.hpp"
+#include "model/hybrid_system.hpp"
+#include "model/index_vector.hpp"
+#include "orbit/orbit.hpp"
+
+namespace tchat {
+
+/// A segment of the simulated motion: what ended it, and where it began.
+struct PassedSegment {
+  IndexVector index;
+  Eigen::VectorXd start;
+};
+
+/// The states in which returns of the signature begin, n x K, in their order. Throws UserError, `source` in front,
+/// where the motion does not go by the signature again and again, with the segment where it leaves it.
+Eigen::MatrixXd points_of_returns(const std::vector<PassedSegment>& motion, const Signature& one_return,
+                                  const std::string& source);
+
+/// Points whose angles (orbit/torus_winding.hpp) are counted modulo 2 pi, and which of these go round: n x K.
+struct PointsWithAngles {
+  Eigen::MatrixXd points;
+  std::vector<Eigen::Index> winding;  ///< states, from 0; the other angles go to and fro
+};
+PointsWithAngles with_angles(const HybridSystem& system, const Signature& one_return, Eigen::MatrixXd points,
+                             const ParameterVector& par);
+
+/// `orbits` returns from equal phases of the curve, integrated, on a uniform mesh; PAR with rho and the durations.
+/// Throws ComputationError where one cannot be integrated.
+Orbit orbits_from_curve(const HybridSystem& system, const Signature& one_return, const InvariantCurve& curve,
+                        const ParameterVector& par, int orbits, int intervals, int collocation);
+
+}  // namespace tchat

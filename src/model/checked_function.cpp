@@ -1,0 +1,110 @@
+#include "model/checked_function.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "model/extrapolated_difference.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double trust_factor = 20.0;        // on the error estimate of the differences
+constexpr double relative_tolerance = 1e-8;  // of a function's scale
+
+}  // namespace
+
+std::string point_text(const TestPoint& at) {
+  std::string text = "x = (";
+  for (Eigen::Index i = 0; i < at.x.size(); ++i) text += fmt::format("{}{:.6g}", i > 0 ? ", " : "", at.x(i));
+  return text + ")";
+}
+
+CheckedFunction::CheckedFunction(const HybridSystem& system, FunctionKind kind, int index)
+    : CheckedFunction(system, kind, index, std::vector<int>(static_cast<std::size_t>(system.parameters()))) {
+  std::iota(active_.begin(), active_.end(), 1);
+}
+
+CheckedFunction::CheckedFunction(const HybridSystem& system, FunctionKind kind, int index, std::vector<int> active)
+    : system_(system), kind_(kind), index_(index), active_(std::move(active)) {}
+
+VectorXd CheckedFunction::value(const TestPoint& at) const {
+  VectorXd out(rows());
+  system_.value(kind_, index_, at.x.data(), at.par.data(), out.data());
+  return out;
+}
+
+MatrixXd CheckedFunction::first(const TestPoint& at, VectorXd& value) const {
+  MatrixXd derivative(rows(), variables());
+  value.resize(rows());
+  system_.first(kind_, index_, at.x.data(), at.par.data(), active_, value.data(), derivative.data(),
+                derivative.data() + rows() * system_.dimension());
+  return derivative;
+}
+
+MatrixXd CheckedFunction::second(const TestPoint& at, const VectorXd& direction, VectorXd& along) const {
+  MatrixXd derivative(rows(), variables());
+  along.resize(rows());
+  system_.second(kind_, index_, at.x.data(), at.par.data(), active_, direction.data(), along.data(), derivative.data(),
+                 derivative.data() + rows() * system_.dimension());
+  return derivative;
+}
+
+double CheckedFunction::variable(const TestPoint& at, int c) const {
+  return c < system_.dimension() ? at.x(c) : at.par(parameter(c) - 1);
+}
+
+TestPoint CheckedFunction::moved(TestPoint at, int c, double t) const {
+  double& moving = c < system_.dimension() ? at.x(c) : at.par(parameter(c) - 1);
+  moving += t;
+  return at;
+}
+
+std::string CheckedFunction::variable_name(int c) const {
+  return c < system_.dimension() ? system_.state_name(c + 1) : system_.parameter_name(parameter(c));
+}
+
+std::string CheckedFunction::row_name(int row) const {
+  switch (kind_) {
+    case FunctionKind::field:
+      return fmt::format("f_{}[{}]", index_, system_.state_name(row + 1));
+    case FunctionKind::event:
+      return fmt::format("h_{}", index_);
+    case FunctionKind::jump:
+      return fmt::format("g_{}[{}]", index_, system_.state_name(row + 1));
+    default:
+      return fmt::format("q_{}[{}]", index_, row + 1);
+  }
+}
+
+MatrixComparison compare_with_differences(const CheckedFunction& function, const TestPoint& at,
+                                          const MatrixXd& supplied,
+                                          const std::function<VectorXd(const TestPoint&)>& value) {
+  MatrixComparison comparison;
+  const double value_scale = value(at).lpNorm<Eigen::Infinity>();
+  const double scale = 1.0 + std::max(value_scale, supplied.lpNorm<Eigen::Infinity>());
+  for (int c = 0; c < function.variables(); ++c) {
+    const double step = 0.02 * (1.0 + std::abs(function.variable(at, c)));
+    const auto along = [&](double t) { return value(function.moved(at, c, t)); };
+    const ExtrapolatedDifference difference = extrapolated_difference(along, step);
+    for (int r = 0; r < function.rows(); ++r) {
+      if (!std::isfinite(difference.value(r))) continue;
+      const double distance = std::abs(supplied(r, c) - difference.value(r));
+      const double allowed = trust_factor * difference.error(r) + relative_tolerance * scale;
+      const double excess = std::isfinite(supplied(r, c)) ? distance / allowed : INFINITY;
+      const ComparedEntry entry = {distance / scale, excess, r, c, supplied(r, c), difference.value(r)};
+      if (entry.at_fault()) comparison.faults.push_back(entry);
+      if (entry.excess > comparison.worst.excess) comparison.worst = entry;
+    }
+  }
+  return comparison;
+}
+
+}  // namespace tchat

@@ -1,0 +1,148 @@
+/// A hybrid dynamical system as the rest of tchat sees it: fields f_i, event functions h_j and jumps g_k with their
+/// derivatives, over a problem table (plugin, or a class compiled into a test); and, for boundary value problems, the
+/// boundary conditions and integrands that the problem has of its own.
+///
+/// Indices count from 1. x has `dimension()` entries, par is a ParameterVector's data (layout().room() entries).
+/// Matrices are column-major. Evaluation never allocates and never throws; a function that cannot be evaluated gives
+/// entries that are not finite, which callers check (`all_finite`).
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "model/index_vector.hpp"
+#include "model/parameter_layout.hpp"
+#include "tchat/problem.h"
+
+namespace tchat {
+
+enum class FunctionKind { field = TCHAT_FIELD, event = TCHAT_EVENT, jump = TCHAT_JUMP, integrand = TCHAT_INTEGRAND };
+
+/// A larger number of states or conditions is an input error: memory would not suffice.
+inline constexpr int most_states = 100'000;
+
+/// The ends of the segments of an orbit, n x m each, and PAR with the durations, for the boundary conditions.
+struct OrbitEnds {
+  int segments;
+  const double* starts;
+  const double* ends;
+  const double* par;
+};
+
+class HybridSystem {
+ public:
+  /// A view of a table that outlives this object. Throws std::invalid_argument when the table is not usable
+  /// (ABI version, sizes out of range, missing functions).
+  explicit HybridSystem(const tchat_problem& table);
+
+  int dimension() const { return table_->dimension; }
+  /// May modes have fewer states? The others of those are zero there.
+  bool has_modes() const { return table_->field_dimensions != nullptr; }
+  /// The states of the mode of a field.
+  int dimension_of(int field) const { return has_modes() ? table_->field_dimensions[field - 1] : dimension(); }
+  int parameters() const { return table_->parameters; }
+  /// Where PAR has the parameters and where the durations begin.
+  ParameterLayout layout() const { return ParameterLayout(parameters()); }
+  /// How many functions of a kind there are; integrands are one for each segment, whatever their number.
+  int count(FunctionKind kind) const;
+  /// How many values a function of a kind has.
+  int rows(FunctionKind kind) const {
+    if (kind == FunctionKind::event) return 1;
+    return kind == FunctionKind::integrand ? table_->integral_conditions : table_->dimension;
+  }
+  int boundary_conditions() const { return table_->boundary_conditions; }
+  int integral_conditions() const { return table_->integral_conditions; }
+  /// Which fields slide on the surface of an event function, as far as the problem tells.
+  std::span<const tchat_sliding> sliding_modes() const {
+    return {table_->sliding, static_cast<std::size_t>(table_->sliding_modes)};
+  }
+  /// The mode that a field belongs to; null when it is none that slides.
+  const tchat_sliding* sliding_mode(int field) const;
+  const tchat_problem& table() const { return *table_; }
+
+  std::string name() const { return table_->name; }
+  /// User's name or "U(k)", "PAR(k)", "field i", ... ; k counts from 1. Durations are "T1", ..., and the rotation
+  /// number of tori is "rho".
+  std::string state_name(int k) const;
+  std::string parameter_name(int k) const;
+  std::string function_name(FunctionKind kind, int index) const;
+  /// 1-based index of a parameter by its name, "rho" among them; 0 if there is none.
+  int parameter_index(const std::string& name) const;
+
+  /// out = F(x, p), rows(kind) entries. The index of an integrand is the number of its segment. Jump 0 is the identity,
+  /// here and in the derivatives; no problem sees it.
+  void value(FunctionKind kind, int index, const double* x, const double* par, double* out) const {
+    if (is_identity(kind, index))
+      std::copy_n(x, dimension(), out);
+    else
+      table_->value(table_->self, static_cast<int>(kind), index, x, par, out);
+  }
+  double event(int j, const double* x, const double* par) const {
+    double h = 0.0;
+    value(FunctionKind::event, j, x, par, &h);
+    return h;
+  }
+
+  /// Does the problem have an index jump function?
+  bool has_successors() const { return table_->successors != nullptr; }
+  /// The index vectors that may follow a segment `from` that ends, before its jump, at x; from = (0, 0, 0): those at a
+  /// start x. The one with priority first. Nothing when the problem has no such function or it cannot be evaluated.
+  std::optional<std::vector<IndexVector>> successors(const IndexVector& from, const double* x, const double* par) const;
+
+  /// F, F_x (rows x dimension) and F_p (rows x active.size()); `active` lists PAR indices from 1. Central differences
+  /// where the table has no derivatives.
+  void first(FunctionKind kind, int index, const double* x, const double* par, std::span<const int> active, double* out,
+             double* dx, double* dp) const;
+
+  /// The same at `points` points, their arrays one behind the other.
+  void first_at_points(FunctionKind kind, int index, int points, const double* x, const double* par,
+                       std::span<const int> active, double* out, double* dx, double* dp) const;
+
+  /// Does the problem give them at four points side by side?
+  bool has_first_in_lanes() const { return table_->derivative_order >= 1 && table_->first_in_lanes != nullptr; }
+  /// If it does, the same at `sets` sets of four points: entry k of the point in lane l is number 4 k + l of its set's
+  /// arrays. No jumps.
+  void first_in_lanes(FunctionKind kind, int index, int sets, const double* x, const double* par,
+                      std::span<const int> active, double* out, double* dx, double* dp) const {
+    table_->first_in_lanes(table_->self, static_cast<int>(kind), index, sets, x, par, active.data(),
+                           static_cast<int>(active.size()), out, dx, dp);
+  }
+
+  /// D = F_x v + F_p w and its derivatives by x and the active parameters; direction = (v, w).
+  void second(FunctionKind kind, int index, const double* x, const double* par, std::span<const int> active,
+              const double* direction, double* out, double* dx, double* dp) const;
+
+  /// The coefficients (tchat_problem::third) of F along states x_m, m = 0..7, that depend on three numbers whose
+  /// squares are left out: 8 dimension() numbers to 8 rows(kind). Where the table has none they are made of second
+  /// derivatives and a difference of these, good to about 1e-8; that allocates.
+  void third(FunctionKind kind, int index, const double* x, const double* par, double* out) const;
+  /// The same at `points` points, their arrays one behind the other.
+  void third_at_points(FunctionKind kind, int index, int points, const double* x, const double* par, double* out) const;
+  bool has_third() const { return table_->third != nullptr; }
+
+  /// The boundary conditions: boundary_conditions() values.
+  void boundary(const OrbitEnds& at, double* out) const {
+    table_->boundary(table_->self, at.segments, at.starts, at.ends, at.par, out);
+  }
+  /// With their derivatives (rows: conditions) by all starts, all ends (n m columns each) and the active entries of
+  /// PAR, durations among them.
+  void boundary_first(const OrbitEnds& at, std::span<const int> active, double* out, double* dstarts, double* dends,
+                      double* dp) const;
+
+ private:
+  bool is_identity(FunctionKind kind, int index) const { return kind == FunctionKind::jump && index == no_function; }
+
+  const tchat_problem* table_;
+};
+
+/// The least number of states that a mode of the signature has: an orbit has this many multipliers; the others are
+/// zero.
+int least_dimension(const HybridSystem& system, const Signature& signature);
+
+/// True when no entry is NaN or infinite.
+bool all_finite(const double* values, int count);
+
+}  // namespace tchat

@@ -1,0 +1,200 @@
+#include "motion/attractor_search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "motion/equilibrium_approach.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr std::size_t points_looked_at = 6;
+constexpr long first_nearby = 48;  // events
+constexpr std::size_t most_passed = 8192;
+constexpr long first_gap = 8;           // events between two tries where the motion repeats itself
+constexpr double near = 0.05;           // states one period apart, in ranges
+constexpr int most_nearby = 3;          // candidates of one try
+constexpr long held_events = 64;        // for so long a motion that cannot be corrected repeats itself
+constexpr double held_movement = 10.0;  // recognitions
+
+/// "a multiplier of modulus 1.0123 (+- 1e-08)"
+std::string modulus_text(const CorrectedOrbit& orbit) {
+  return fmt::format("a multiplier of modulus {:.8g} (+- {:.1g})",
+                     orbit.multipliers.empty() ? 0.0 : std::abs(orbit.multipliers.front()), orbit.uncertainty);
+}
+
+}  // namespace
+
+AttractorSearch::AttractorSearch(int max_period, double recognition, SimulationSettings settings)
+    : max_period_(max_period),
+      recognition_(recognition),
+      settings_(std::move(settings)),
+      recurrence_(max_period, recognition),
+      next_nearby_(first_nearby),
+      gap_(first_gap) {
+  settings_.on_piece = {};
+}
+
+void AttractorSearch::find_ignorable(const HybridSimulation& motion, const SimulatedSegment& segment) {
+  points_.push_back(segment.start);
+  points_.push_back(segment.end);
+  const std::vector<bool> flags = ignorable_states(motion.system(), points_, motion.parameters());
+  recurrence_.ignore(flags);
+  ignorable_.clear();
+  for (std::size_t i = 0; i < flags.size(); ++i)
+    if (flags[i]) ignorable_.push_back(static_cast<Index>(i));
+}
+
+bool AttractorSearch::is_beyond(const VectorXd& x, double bound) const {
+  for (Index i = 0; i < x.size(); ++i)
+    if (!(std::abs(x(i)) <= bound) && std::find(ignorable_.begin(), ignorable_.end(), i) == ignorable_.end())
+      return true;
+  return false;
+}
+
+void AttractorSearch::add(const HybridSimulation& motion, const SimulatedSegment& segment) {
+  if (points_.size() < points_looked_at) find_ignorable(motion, segment);
+  recurrence_.add(segment);
+  last_.push_back(segment);
+  if (last_.size() > static_cast<std::size_t>(max_period_)) last_.pop_front();
+  passed_.push_back({segment.index, segment.end});
+  if (passed_.size() > most_passed) passed_.pop_front();
+  ++events_;
+}
+
+/// States of the last event and of those a whole number of periods before it, as long as the events repeat themselves.
+std::vector<VectorXd> AttractorSearch::passed(std::size_t period) const {
+  std::vector<VectorXd> states;
+  for (std::size_t back = 1; back <= passed_.size(); ++back) {
+    const Passed& at = passed_[passed_.size() - back];
+    if (back > period && at.index != passed_[passed_.size() - back + period].index) break;
+    if ((back - 1) % period == 0) states.push_back(at.end);
+  }
+  std::reverse(states.begin(), states.end());
+  return states;
+}
+
+bool AttractorSearch::has_settled(const HybridSimulation& motion, const SimulatedSegment& segment) {
+  add(motion, segment);
+  const std::optional<int> period = recurrence_.period();
+  if (!period) held_.reset();
+  if (period && held_ && keeps_repeating(motion, *period)) return true;
+  if (period && events_ >= next_recurrence_) {
+    if (try_recurrence(motion, *period)) return true;
+    next_recurrence_ = events_ + gap_;
+    gap_ *= 2;
+  }
+  if (events_ < next_nearby_) return false;
+  next_nearby_ = 2 * events_;
+  return try_nearby(motion) || try_rest(motion);
+}
+
+bool AttractorSearch::conclude(const HybridSimulation& motion) {
+  const std::optional<int> period = recurrence_.period();
+  if (period ? try_recurrence(motion, *period) : try_nearby(motion)) return true;
+  if (period) orbit_ = kept_to_;
+  return orbit_.has_value() || try_rest(motion);
+}
+
+bool AttractorSearch::try_rest(const HybridSimulation& motion) {
+  if (last_.empty()) return false;
+  const IndexVector& index = last_.back().index;
+  const auto is_alike = [&index](const auto& event) { return event.index == index; };
+  const auto least = static_cast<std::size_t>(std::count_if(last_.begin(), last_.end(), is_alike));
+  std::vector<VectorXd> states;  // the newest first
+  for (std::size_t back = 1; back <= passed_.size() && (2 * back <= passed_.size() || states.size() < least); ++back)
+    if (const Passed& at = passed_[passed_.size() - back]; is_alike(at)) states.push_back(at.end);
+  std::reverse(states.begin(), states.end());
+  equilibrium_ = approached_equilibrium(motion.system(), index, states, least, motion.parameters(), ignorable_);
+  return equilibrium_.has_value();
+}
+
+/// The shortest part of the period that repeats itself comes first.
+bool AttractorSearch::try_recurrence(const HybridSimulation& motion, int period) {
+  doubt_.clear();
+  is_near_unstable_ = false;
+  for (int q = 1; q <= period; ++q)
+    if (period % q == 0 && recurrence_.repeats_events(static_cast<std::size_t>(q)) &&
+        try_period(motion, static_cast<std::size_t>(q)))
+      return true;
+  return false;
+}
+
+bool AttractorSearch::try_nearby(const HybridSimulation& motion) {
+  doubt_.clear();
+  is_near_unstable_ = false;
+  int tried = 0;
+  for (std::size_t q = 1; q <= static_cast<std::size_t>(max_period_) && tried < most_nearby; ++q) {
+    if (!recurrence_.repeats_events(q)) continue;
+    // A motion that goes round a slow focus is never near where it was.
+    if (tried > 0 && !(recurrence_.difference(q) <= near)) continue;
+    if (try_period(motion, q)) return true;
+    ++tried;
+  }
+  return false;
+}
+
+bool AttractorSearch::try_period(const HybridSimulation& motion, std::size_t period) {
+  const OrbitCandidate candidate{
+      motion,    last_.back().end, recurrence_.last(period), recurrence_.scale(2 * period), ignorable_,
+      settings_, passed(period)};
+  const CorrectedOrbit corrected = correct_orbit(candidate);
+  const bool repeats = recurrence_.period() == static_cast<int>(period);
+  SettledOrbit found;
+  found.end = corrected.converged ? corrected.end : candidate.end;
+  if (!corrected.converged) {
+    if (!repeats || corrected.is_smooth) return false;
+    found.turn.assign(last_.end() - static_cast<std::ptrdiff_t>(period), last_.end());
+    found.stability = OrbitStability::neutral;
+  } else {
+    found.is_corrected = true;
+    found.stability = corrected.stability();
+    found.multipliers = corrected.multipliers;
+    found.uncertainty = corrected.uncertainty;
+    found.turn = turn_of(candidate, corrected.end).segments;
+  }
+  if (found.stability == OrbitStability::stable) {
+    if (!approaches(candidate, corrected)) {
+      doubt_ = fmt::format("a stable orbit of {} event(s), {}, is near, and the motion does not approach it yet",
+                           period, modulus_text(corrected));
+      return false;
+    }
+    orbit_ = std::move(found);
+    return true;
+  }
+  const bool is_near = repeats || (corrected.converged && is_leaving(candidate, corrected));
+  if (!is_near) return false;
+  is_near_unstable_ = found.stability == OrbitStability::unstable;
+  if (corrected.converged)
+    doubt_ = fmt::format("the orbit of {} event(s) that the motion keeps to, or is leaving, has {} and is no attractor",
+                         period, modulus_text(corrected));
+  if (!repeats) return false;
+  kept_to_ = std::move(found);
+  if (kept_to_->stability == OrbitStability::neutral && !held_)
+    held_ = Held{events_, static_cast<int>(period), last_.back().end};
+  return false;
+}
+
+bool AttractorSearch::keeps_repeating(const HybridSimulation& motion, int period) {
+  if (period != held_->period) {
+    held_.reset();
+    return false;
+  }
+  const long passed = events_ - held_->since;
+  if (passed < held_events || passed % period != 0) return false;
+  const VectorXd scale = recurrence_.scale(2 * static_cast<std::size_t>(period));
+  const VectorXd moved = (last_.back().end - held_->state).cwiseAbs().cwiseQuotient(scale);
+  held_.reset();
+  if (!(moved.maxCoeff() <= held_movement * recognition_)) return false;
+  if (!try_period(motion, static_cast<std::size_t>(period))) orbit_ = kept_to_;
+  return true;
+}
+
+}  // namespace tchat

@@ -1,0 +1,203 @@
+#include "motion/found_orbit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "linear/dense_matrix.hpp"
+#include "model/identity_jump.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double same_orbit = 0.1;   // largest correction, as a share of the orbit's range
+constexpr double same_state = 1e-7;  // of points of the refined orbit, likewise
+
+bool ends_in_section(const HybridSystem& system, const std::vector<SimulatedSegment>& turn, std::size_t s) {
+  return is_identity_jump(system, turn[s].index) && turn[(s + 1) % turn.size()].mode.field() == turn[s].mode.field();
+}
+
+/// `first` and the segment that follows it without anything between.
+SimulatedSegment joined(const SimulatedSegment& first, SimulatedSegment second) {
+  for (const IndexVector& v : first.mode.index_vectors)
+    if (const auto& all = second.mode.index_vectors; std::find(all.begin(), all.end(), v) == all.end())
+      second.mode.index_vectors.push_back(v);
+  for (const int event : first.mode.monitored)
+    if (const auto& all = second.mode.monitored; std::find(all.begin(), all.end(), event) == all.end())
+      second.mode.monitored.push_back(event);
+  second.start = first.start;
+  second.start_time = first.start_time;
+  second.duration += first.duration;
+  second.low = second.low.cwiseMin(first.low);
+  second.high = second.high.cwiseMax(first.high);
+  second.samples.clear();
+  second.marks.clear();
+  return second;
+}
+
+PeriodicOrbit shoot_finely(const HybridSystem& system, FoundOrbit& found, const VectorXd& guess, const VectorXd& par,
+                           const std::vector<Eigen::Index>& ignorable) {
+  ShootingOptions options;
+  options.ignorable = ignorable;
+  const PeriodicOrbit orbit = shoot(system, found.signature, guess, par, options);
+  found.uncertainty = 1e-9;
+  if (orbit.converged) return orbit;
+  // Large derivatives leave fewer digits.
+  options.flow.relative_tolerance = 1e-12;
+  options.flow.absolute_tolerance = 1e-13;
+  options.tolerance = 1e-9;
+  const PeriodicOrbit roughly = shoot(system, found.signature, guess, par, options);
+  found.uncertainty = 1e-6;
+  if (roughly.converged) return roughly;
+  // On a stiff problem the steps of a method for others are too many.
+  options.flow.method = IntegrationMethod::bdf;
+  options.flow.max_steps = 1000000;
+  PeriodicOrbit stiff = shoot(system, found.signature, guess, par, options);
+  if (!stiff.converged) return roughly;
+  found.method = IntegrationMethod::bdf;
+  return stiff;
+}
+
+/// How far each state goes on the simulated orbit; infinitely far where it does not matter.
+VectorXd ranges(const std::vector<SimulatedSegment>& turn, const std::vector<Eigen::Index>& ignorable) {
+  VectorXd low = turn.front().low;
+  VectorXd high = turn.front().high;
+  for (const SimulatedSegment& segment : turn) {
+    low = low.cwiseMin(segment.low);
+    high = high.cwiseMax(segment.high);
+  }
+  VectorXd range = high - low;
+  for (const Eigen::Index k : ignorable) range(k) = 0.0;
+  range.array() += 1e-3 * range.maxCoeff();
+  for (const Eigen::Index k : ignorable) range(k) = INFINITY;
+  return range;
+}
+
+/// The number of segments after which the orbit already repeats itself: near an orbit with a multiplier close to -1 the
+/// simulation comes back best after two turns.
+std::size_t true_period(const FoundOrbit& found, const PeriodicOrbit& orbit, const VectorXd& range) {
+  const std::size_t m = found.signature.size();
+  for (std::size_t q = 1; q < m; ++q) {
+    bool repeats = m % q == 0;
+    for (std::size_t s = 0; repeats && s < m; ++s) {
+      const VectorXd difference = orbit.map.segments[s].start - orbit.map.segments[(s + q) % m].start;
+      repeats = found.signature[s] == found.signature[(s + q) % m] &&
+                (difference.cwiseAbs().array() <= same_state * range.array()).all();
+    }
+    if (repeats) return q;
+  }
+  return m;
+}
+
+}  // namespace
+
+OrbitStability stability_of(const std::vector<std::complex<double>>& multipliers, double uncertainty) {
+  double largest = 0.0;
+  for (const auto& mu : multipliers) largest = std::max(largest, std::abs(mu));
+  if (largest < 1.0 - uncertainty) return OrbitStability::stable;
+  return largest > 1.0 + uncertainty ? OrbitStability::unstable : OrbitStability::neutral;
+}
+
+std::vector<std::complex<double>> multipliers_without(const MatrixXd& m, const std::vector<Eigen::Index>& ignorable) {
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < m.rows(); ++i)
+    if (std::find(ignorable.begin(), ignorable.end(), i) == ignorable.end()) kept.push_back(i);
+  const Eigen::VectorXcd values = eigenvalues(MatrixXd(m(kept, kept)));
+  std::vector<std::complex<double>> sorted(values.begin(), values.end());
+  std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
+    return std::abs(a) != std::abs(b) ? std::abs(a) > std::abs(b) : a.imag() > b.imag();
+  });
+  return sorted;
+}
+
+std::vector<SimulatedSegment> in_standard_order(std::vector<SimulatedSegment> turn, const IndexVector& first) {
+  const auto sequence_from = [&](std::size_t begin) {
+    Signature s;
+    for (std::size_t i = 0; i < turn.size(); ++i) s.push_back(turn[(begin + i) % turn.size()].index);
+    return s;
+  };
+  const auto is_better = [&](std::size_t a, std::size_t b) {
+    const bool a_first = turn[a].index == first;
+    const bool b_first = turn[b].index == first;
+    return a_first != b_first ? a_first : sequence_from(a) < sequence_from(b);
+  };
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < turn.size(); ++k)
+    if (is_better(k, best)) best = k;
+  std::rotate(turn.begin(), turn.begin() + static_cast<std::ptrdiff_t>(best), turn.end());
+  return turn;
+}
+
+std::vector<SimulatedSegment> without_sections(const HybridSystem& system, std::vector<SimulatedSegment> turn) {
+  std::size_t last = turn.size();  // a segment that stays one
+  for (std::size_t s = 0; s < turn.size(); ++s)
+    if (!ends_in_section(system, turn, s)) last = s;
+  if (last == turn.size()) return turn;
+  std::rotate(turn.begin(), turn.begin() + static_cast<std::ptrdiff_t>((last + 1) % turn.size()), turn.end());
+  std::vector<SimulatedSegment> kept;
+  bool open = false;  // the last one kept goes on
+  for (std::size_t s = 0; s < turn.size(); ++s) {
+    if (open)
+      kept.back() = joined(kept.back(), turn[s]);
+    else
+      kept.push_back(turn[s]);
+    open = ends_in_section(system, turn, s);
+  }
+  return kept;
+}
+
+FoundOrbit without_cuts(FoundOrbit orbit, std::vector<int> monitored) {
+  MapSegment whole = orbit.map.segments.front();
+  whole.end = orbit.map.segments.back().end;
+  whole.duration = orbit.map.period;
+  orbit.map.segments = {whole};
+  orbit.signature = {{orbit.signature.front().field, no_function, no_function}};
+  orbit.modes = {Mode{{}, std::move(monitored)}};
+  return orbit;
+}
+
+FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, const VectorXd& par,
+                  const IndexVector& first, bool is_guess) {
+  const std::vector<SimulatedSegment> turn = in_standard_order(result.turn, first);
+  FoundOrbit found;
+  for (const SimulatedSegment& segment : turn) {
+    found.signature.push_back(segment.index);
+    found.modes.push_back(segment.mode);
+  }
+  const VectorXd range = ranges(turn, result.ignorable);
+  PeriodicOrbit orbit = shoot_finely(system, found, turn.front().start, par, result.ignorable);
+  // Only where shooting has closed the orbit does its map have all segments.
+  if (const std::size_t period = orbit.converged ? true_period(found, orbit, range) : turn.size();
+      period < turn.size()) {
+    found.signature.resize(period);
+    found.modes.resize(period);
+    orbit = shoot_finely(system, found, orbit.start, par, result.ignorable);
+  }
+  found.start = orbit.start;
+  found.map = orbit.map;
+  found.iterations = orbit.iterations;
+  if (!orbit.converged) {
+    found.message = orbit.message;
+    return found;
+  }
+  found.moved = orbit.start - turn.front().start;
+  const double share = found.moved.cwiseQuotient(range).lpNorm<Eigen::Infinity>();
+  if (!is_guess && !(share < same_orbit)) {
+    found.message = fmt::format("shooting went {:.2g} of its range away, to another orbit", share);
+    return found;
+  }
+  found.converged = true;
+  found.multipliers = multipliers_without(orbit.map.derivative, result.ignorable);
+  const auto states = static_cast<std::size_t>(least_dimension(system, found.signature));
+  if (found.multipliers.size() > states) found.multipliers.resize(states);  // the others are zero
+  found.advance = VectorXd::Zero(found.start.size());
+  for (const Eigen::Index k : result.ignorable) found.advance(k) = orbit.map.end(k) - orbit.start(k);
+  return found;
+}
+
+}  // namespace tchat

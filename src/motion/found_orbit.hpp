@@ -1,0 +1,63 @@
+/// The periodic orbit that a simulation has settled on, refined by shooting.
+#pragma once
+
+#include <complex>
+#include <string>
+#include <vector>
+
+#include "motion/orbit_flow.hpp"
+#include "motion/simulation_run.hpp"
+
+namespace tchat {
+
+enum class OrbitStability {
+  stable,    ///< every multiplier inside the unit circle
+  neutral,   ///< the largest one on it, as far as its uncertainty tells
+  unstable,  ///< one outside
+};
+
+/// By the largest modulus, known to +- uncertainty.
+OrbitStability stability_of(const std::vector<std::complex<double>>& multipliers, double uncertainty);
+
+/// Eigenvalues of a return map's derivative without the rows and columns of ignorable states, largest modulus first.
+std::vector<std::complex<double>> multipliers_without(const Eigen::MatrixXd& derivative,
+                                                      const std::vector<Eigen::Index>& ignorable);
+
+struct FoundOrbit {
+  bool converged = false;
+  std::string message;  ///< why not
+  Signature signature;
+  std::vector<Mode> modes;  ///< what each segment watched
+  Eigen::VectorXd start;    ///< x_1(0)
+  ReturnMap map;            ///< one turn from there
+  /// Floquet multipliers, largest modulus first; the 1 of each ignorable state left out.
+  std::vector<std::complex<double>> multipliers;
+  Eigen::VectorXd advance;                              ///< of each state in one turn: zero but for ignorable states
+  int iterations = 0;                                   ///< Newton steps of shooting
+  IntegrationMethod method = IntegrationMethod::adams;  ///< by which it was found
+
+  Eigen::VectorXd moved;     ///< of x_1(0), by the correction
+  double uncertainty = 0.0;  ///< of the moduli of multipliers: what integration leaves
+
+  OrbitStability stability() const { return stability_of(multipliers, uncertainty); }
+};
+
+/// A turn whose Poincare sections (identity jump, the same field after it) no longer end segments: each joins the
+/// segment after it. As it was when nothing else ends a segment. Samples and marks are not kept.
+std::vector<SimulatedSegment> without_sections(const HybridSystem& system, std::vector<SimulatedSegment> turn);
+
+/// The orbit of a smooth system as one segment without a section, {(i,0,0)}, on which `monitored` event functions
+/// count.
+FoundOrbit without_cuts(FoundOrbit orbit, std::vector<int> monitored);
+
+/// A turn rotated so that its index vectors read the same wherever the simulation stopped: with `first`, if the orbit
+/// has it, in front, and the smallest sequence of those.
+std::vector<SimulatedSegment> in_standard_order(std::vector<SimulatedSegment> turn, const IndexVector& first);
+
+/// Refines the recognised turn of `result`, whose segments are rotated so that the smallest index vector, or `first` if
+/// the orbit has it, comes first. What fails is a value: no convergence, or convergence to another orbit than the one
+/// simulated, unless that was a guess.
+FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, const Eigen::VectorXd& par,
+                  const IndexVector& first, bool is_guess = false);
+
+}  // namespace tchat

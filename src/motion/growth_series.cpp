@@ -1,0 +1,176 @@
+#include "motion/growth_series.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace tchat {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr Index most_bins = 8192;
+constexpr Index least_blocks = 16;
+constexpr Index most_blocks = 4 * least_blocks;
+constexpr Index least_for_alignment = 64;
+constexpr Index weighted_blocks = 8;
+constexpr Index least_weighted = 16;  // bins in each of those
+// 97.7 % of Student's distribution with 7 degrees of freedom, as a share of the two deviations of a normal one.
+constexpr double student = 1.21;
+constexpr double clearly_better = 0.2;
+constexpr double significant = 2.0;  // bars
+
+struct Mean {
+  Index direction = 0;
+  double value = 0.0;
+  double error = std::numeric_limits<double>::infinity();
+};
+
+/// One direction's logarithms and durations.
+struct Rates {
+  Eigen::RowVectorXd logarithms, durations;
+
+  Index size() const { return logarithms.size(); }
+};
+
+/// Of the mean from blocks of so many bins: the deviations of the blocks from it, added in squares.
+double block_error(const Rates& rates, double mean, Index length) {
+  const Index blocks = rates.size() / length;
+  double squares = 0.0;
+  for (Index b = 0; b < blocks; ++b) {
+    const double deviation =
+        rates.logarithms.segment(b * length, length).sum() - mean * rates.durations.segment(b * length, length).sum();
+    squares += deviation * deviation;
+  }
+  const auto count = static_cast<double>(blocks);
+  return std::sqrt(squares * count / (count - 1.0)) / rates.durations.head(blocks * length).sum();
+}
+
+/// Without the first ones, in which the frame has still to turn to where the growth is.
+Rates after_alignment(const Rates& rates) {
+  const Index kept = rates.size() >= least_for_alignment ? rates.size() - rates.size() / 16 : rates.size();
+  return {rates.logarithms.tail(kept), rates.durations.tail(kept)};
+}
+
+/// What the mean is off if the rate still changes along the motion: half the difference of its halves, or a quarter of
+/// that of its outer quarters.
+double drift_error(const Rates& rates) {
+  const auto rate = [&](Index begin, Index length) {
+    return rates.logarithms.segment(begin, length).sum() / rates.durations.segment(begin, length).sum();
+  };
+  const Index half = rates.size() / 2, quarter = rates.size() / 4;
+  const double halves = 0.5 * std::abs(rate(0, half) - rate(rates.size() - half, half));
+  const double quarters = 0.25 * std::abs(rate(0, quarter) - rate(rates.size() - quarter, quarter));
+  return std::max(halves, quarters);
+}
+
+Mean plain_mean(const Rates& all) {
+  const Rates rates = after_alignment(all);
+  Mean mean;
+  mean.value = rates.logarithms.sum() / rates.durations.sum();
+  if (rates.size() < least_blocks) return mean;
+  mean.error = 0.0;
+  Index length = 1;
+  while (rates.size() / length >= most_blocks) length *= 2;
+  for (; rates.size() / length >= least_blocks; length *= 2)
+    mean.error = std::max(mean.error, block_error(rates, mean.value, length));
+  if (const double drift = drift_error(rates); drift > significant * mean.error) mean.error = drift;
+  return mean;
+}
+
+double weighted_value(const Rates& rates, Index begin, Index length) {
+  double growth = 0.0, duration = 0.0;
+  for (Index i = 0; i < length; ++i) {
+    const double s = (static_cast<double>(i) + 0.5) / static_cast<double>(length);
+    const double weight = std::exp(-1.0 / (s * (1.0 - s)));
+    growth += weight * rates.logarithms(begin + i);
+    duration += weight * rates.durations(begin + i);
+  }
+  return growth / duration;
+}
+
+Mean weighted_mean(const Rates& rates) {
+  Mean mean;
+  const Index length = rates.size() / weighted_blocks;
+  if (length < least_weighted) return mean;
+  mean.value = weighted_value(rates, 0, rates.size());
+  VectorXd blocks(weighted_blocks);
+  for (Index b = 0; b < weighted_blocks; ++b) blocks(b) = weighted_value(rates, b * length, length);
+  const auto count = static_cast<double>(weighted_blocks);
+  mean.error = student * std::sqrt((blocks.array() - blocks.mean()).square().sum() / (count - 1.0) / count);
+  mean.error = std::max(mean.error, std::abs(blocks.mean() - mean.value));
+  // Blocks that are alike, as where two directions turn by nearly a share of a turn, are off alike.
+  const Index half = rates.size() / 2;
+  for (const Index begin : {Index(0), rates.size() - half})
+    mean.error = std::max(mean.error, std::abs(weighted_value(rates, begin, half) - mean.value));
+  return mean;
+}
+
+Mean mean_of(const Rates& rates) {
+  if (!rates.logarithms.allFinite()) return {0, rates.logarithms.sum(), 0.0};
+  const Mean plain = plain_mean(rates);
+  const Mean weighted = weighted_mean(rates);
+  return weighted.error < clearly_better * plain.error ? weighted : plain;
+}
+
+}  // namespace
+
+GrowthSeries::GrowthSeries(Index directions) : bins_(directions + 1, most_bins) {}
+
+void GrowthSeries::add(const VectorXd& logarithms, double duration) {
+  if (in_last_ == 0 || in_last_ == width_) {
+    if (used_ == most_bins) join_pairs();
+    bins_.col(used_++).setZero();
+    in_last_ = 0;
+  }
+  bins_.col(used_ - 1).head(logarithms.size()) += logarithms;
+  bins_(logarithms.size(), used_ - 1) += duration;
+  ++in_last_;
+  ++pieces_;
+}
+
+void GrowthSeries::join_pairs() {
+  for (Index i = 0; i < used_ / 2; ++i) bins_.col(i) = bins_.col(2 * i) + bins_.col(2 * i + 1);
+  used_ /= 2;
+  width_ *= 2;
+  in_last_ = width_;
+}
+
+void GrowthSeries::double_pieces() {
+  // Sums over `width_` pieces are sums over half as many of the longer ones.
+  if (width_ == 1) join_pairs();
+  width_ /= 2;
+  in_last_ = std::max(1L, in_last_ / 2);
+  pieces_ /= 2;
+  if (pieces_ == 0) in_last_ = 0;
+}
+
+LyapunovSpectrum GrowthSeries::spectrum(Index structural) const {
+  const Index directions = bins_.rows() - 1;
+  LyapunovSpectrum spectrum;
+  spectrum.exponents = VectorXd::Constant(directions, std::nan(""));
+  spectrum.errors = VectorXd::Constant(directions, std::numeric_limits<double>::infinity());
+  if (used_ == 0) return spectrum;
+  spectrum.time = bins_.row(directions).head(used_).sum();
+  // Where there are many, a last one that is not complete would disturb what makes all of them alike.
+  const Index complete = in_last_ == width_ || used_ <= least_blocks ? used_ : used_ - 1;
+  std::vector<Mean> means;
+  for (Index j = 0; j < directions; ++j) {
+    means.push_back(mean_of({bins_.row(j).head(complete), bins_.row(directions).head(complete)}));
+    means.back().direction = j;
+  }
+  std::stable_sort(means.begin(), means.end(), [](const Mean& a, const Mean& b) { return a.value > b.value; });
+  for (Index j = 0; j < directions; ++j) {
+    const Mean& mean = means[static_cast<std::size_t>(j)];
+    spectrum.exponents(j) = mean.value;
+    spectrum.errors(j) = mean.error;
+    if (mean.direction < structural) spectrum.structural.push_back(j);
+  }
+  return spectrum;
+}
+
+}  // namespace tchat

@@ -1,0 +1,281 @@
+#include "motion/hybrid_simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/user_error.hpp"
+#include "model/event_at.hpp"
+#include "model/mode_dimensions.hpp"
+#include "model/undefined_value.hpp"
+#include "motion/watched_flow.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::RowVectorXd;
+using Eigen::VectorXd;
+
+constexpr int points_of_piece = 4;  // looked at in each integration step; kept, before thinning
+
+bool contains(const std::vector<int>& events, int event) {
+  return std::find(events.begin(), events.end(), event) != events.end();
+}
+
+/// Every second sample, first and last included.
+void halve(std::vector<Sample>& samples) {
+  const std::size_t last = samples.size() - 1;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < last; i += 2) samples[kept++] = std::move(samples[i]);
+  samples[kept++] = std::move(samples[last]);
+  samples.resize(kept);
+}
+
+/// At most `count` samples, first and last included: half of their density follows time, half the integrator's steps.
+void thin(std::vector<Sample>& samples, std::size_t count) {
+  if (samples.size() <= count || count < 2) return;
+  const std::size_t last = samples.size() - 1;
+  const double begin = samples.front().time;
+  const double span = samples.back().time - begin;
+  const auto weight = [&](std::size_t i) {
+    return 0.5 * (samples[i].time - begin) / span + 0.5 * static_cast<double>(i) / static_cast<double>(last);
+  };
+  std::vector<Sample> kept;
+  std::size_t i = 0;
+  for (std::size_t k = 0; k + 1 < count; ++k) {
+    const double target = static_cast<double>(k) / static_cast<double>(count - 1);
+    while (i < last && weight(i) < target) ++i;
+    if (i < last) kept.push_back(std::move(samples[i++]));
+  }
+  kept.push_back(std::move(samples[last]));
+  samples = std::move(kept);
+}
+
+void require_state(const HybridSystem& system, const VectorXd& x) {
+  if (x.size() != system.dimension())
+    throw UserError(fmt::format("the start has {} states, {} has {}", x.size(), system.name(), system.dimension()));
+  if (!x.allFinite()) throw UserError(fmt::format("the start {} is not finite", state_text(x)));
+}
+
+}  // namespace
+
+HybridSimulation::HybridSimulation(ModeRule rule, const VectorXd& x0, const VectorXd& par, SimulationSettings settings)
+    : rule_(std::move(rule)), system_(rule_.system()), par_(par), settings_(std::move(settings)), x_(x0) {
+  require_state(system_, x0);
+  settings_.flow.variational = false;
+  mode_ = rule_.first(x0, par_);
+  clear_absent(system_, mode_.field(), x_);
+  surface_starts_ = tchat::surface_starts(rule_, mode_, x_, par_, settings_.side, settings_.flow.surface_tolerance);
+}
+
+HybridSimulation::HybridSimulation(const HybridSimulation& at, const VectorXd& end, SimulationSettings settings)
+    : HybridSimulation(at) {
+  settings_ = std::move(settings);
+  settings_.flow.variational = false;
+  before_jump_ = end;
+  system_.value(FunctionKind::jump, last_.jump, end.data(), par_.data(), x_.data());
+}
+
+HybridSimulation::Surface HybridSimulation::surface(int field, int event, const VectorXd& x) const {
+  const EventAt at = event_at(system_, event, field, x.data(), par_.data());
+  return {at.h, at.rate(), std::abs(at.h) <= settings_.flow.surface_tolerance * at.scale(x.data())};
+}
+
+/// Does the jump send the flow back from the surface, as an impact does?
+bool HybridSimulation::is_wall(const IndexVector& index, const VectorXd& x) const {
+  return walls_.contains(index.event) || reverses_flow(system_, index, x, par_);
+}
+
+bool HybridSimulation::leaves_downwards(const IndexVector& index) const {
+  const Surface at = surface(index.field, index.event, x_);
+  return at.is_near && at.rate < 0.0 && !is_wall(index, x_) &&
+         !moves_state(system_, index, x_, par_, settings_.flow.surface_tolerance);
+}
+
+SimulatedSegment HybridSimulation::next(double end_time) {
+  SimulatedSegment segment = begin_segment();
+  if (segment.ended_by != SegmentEnd::event) return segment;
+  if (sticks_at_start(segment)) return segment;
+  mark_walls_behind(segment);
+  if (const std::vector<int> due = due_at_start(segment); !due.empty())
+    end_by(segment, due);
+  else
+    integrate(segment, end_time);
+  return segment;
+}
+
+SimulatedSegment HybridSimulation::begin_segment() {
+  SimulatedSegment segment;
+  segment.number = ++segments_;
+  segment.start_time = time_;
+  segment.start = segment.end = segment.low = segment.high = x_;
+  if (last_.field != 0 && !is_cut_) mode_ = rule_.next(last_, std::exchange(before_jump_, {}), par_);
+  is_cut_ = true;
+  segment.mode = mode_;
+  if (mode_.index_vectors.empty())
+    stop(segment, SegmentEnd::failed, rule_.fault());
+  else if (const std::string fault = last_.field != 0 ? mode_fault(system_, last_, mode_.field()) : ""; !fault.empty())
+    stop(segment, SegmentEnd::failed, fault);
+  if (settings_.samples > 0) segment.samples.push_back({time_, x_});
+  return segment;
+}
+
+void HybridSimulation::stop(SimulatedSegment& segment, SegmentEnd why, std::string message) const {
+  segment.ended_by = why;
+  segment.message = std::move(message);
+}
+
+/// The event that has just ended a segment with an impact, and now the flow goes into h < 0 all the same.
+bool HybridSimulation::sticks_at_start(SimulatedSegment& segment) const {
+  if (!contains(mode_.terminal_events(), last_.event) || contains(pending_, last_.event)) return false;
+  const Surface at = surface(mode_.field(), last_.event, x_);
+  const bool is_thrown_back_to_rest = last_rate_ < 0.0 && at.rate >= 1e-3 * last_rate_;
+  if (!at.is_near || at.rate > 0.0 || !(walls_.contains(last_.event) || is_thrown_back_to_rest)) return false;
+  stop(segment, SegmentEnd::sticks,
+       fmt::format("after the jump the flow goes on through {} at once, at x = {}: the contact lasts, and the problem "
+                   "has no mode for that",
+                   system_.function_name(FunctionKind::event, last_.event), state_text(x_)));
+  return true;
+}
+
+void HybridSimulation::mark_walls_behind(SimulatedSegment& segment) const {
+  for (const IndexVector& index : mode_.index_vectors) {
+    const Surface at = surface(index.field, index.event, x_);
+    if (at.h < 0.0 && !at.is_near && is_wall(index, x_))
+      segment.marks.push_back({SegmentMark::Kind::beyond, index.event, time_, at.h, at.rate, x_});
+  }
+}
+
+/// Events that happen at the very start: those of surface_starts() where the simulation begins; else they came together
+/// with the last one, or the segment starts on a wall and moves into it.
+std::vector<int> HybridSimulation::due_at_start(const SimulatedSegment& segment) const {
+  std::vector<int> due;
+  if (begins()) {
+    for (const SurfaceStart& start : surface_starts_)
+      if (!start.is_after) due.push_back(start.index.event);
+    return due;
+  }
+  for (const IndexVector& index : segment.mode.index_vectors) {
+    const bool is_pending = contains(pending_, index.event);
+    if ((!is_pending && index.event == last_.event) || contains(due, index.event)) continue;
+    const Surface at = surface(index.field, index.event, x_);
+    if (at.is_near && at.rate < 0.0 && (is_pending || is_wall(index, x_))) due.push_back(index.event);
+  }
+  return due;
+}
+
+bool HybridSimulation::pass_piece(SimulatedSegment& segment, const WatchedFlow& flow, double from, double to) {
+  const VectorXd x = flow.state_at(to);
+  for (const int event : watched_) {
+    double& largest = largest_[event];
+    largest = std::max(largest, system_.event(event, x.data(), par_.data()));
+  }
+  for (int k = 1; k <= points_of_piece; ++k) {
+    const double t = k == points_of_piece ? to : from + (to - from) * k / points_of_piece;
+    VectorXd state = flow.state_at(t);
+    segment.low = segment.low.cwiseMin(state);
+    segment.high = segment.high.cwiseMax(state);
+    if (settings_.samples > 0) segment.samples.push_back({segment.start_time + t, std::move(state)});
+  }
+  if (settings_.samples > 0 && segment.samples.size() > 50 * settings_.samples) halve(segment.samples);
+  if (settings_.on_piece && from < to) settings_.on_piece(segment.mode.field(), flow.dense_output(), from, to);
+  return !(settings_.interrupted && settings_.interrupted());
+}
+
+void HybridSimulation::note_contacts(SimulatedSegment& segment, WatchedFlow& flow) const {
+  for (const EventWatch::Contact& contact : flow.take_contacts()) {
+    const auto largest = largest_.find(contact.event);
+    if (largest == largest_.end() || contact.h > settings_.contact * largest->second) continue;
+    segment.marks.push_back(
+        {SegmentMark::Kind::contact, contact.event, segment.start_time + contact.time, contact.h, 0.0, contact.state});
+  }
+}
+
+std::vector<int> HybridSimulation::watched_events() const {
+  std::vector<int> events = mode_.all_events();
+  for (const int section : settings_.sections)
+    if (!contains(events, section)) events.push_back(section);
+  return events;
+}
+
+/// Events after which the simulation begins, in its first segment.
+std::vector<int> HybridSimulation::events_begun_after() const {
+  std::vector<int> events;
+  if (!begins()) return events;
+  for (const SurfaceStart& start : surface_starts_)
+    if (start.is_after) events.push_back(start.index.event);
+  return events;
+}
+
+void HybridSimulation::integrate(SimulatedSegment& segment, double end_time) {
+  const std::unique_ptr<WatchedFlow> integrated = make_flow(system_, mode_.field(), x_, par_, settings_.flow);
+  WatchedFlow& flow = *integrated;
+  watched_ = watched_events();
+  flow.watch(watched_, events_begun_after());
+  flow.on_piece([&](double from, double to) { return pass_piece(segment, flow, from, to); });
+  const std::vector<int> terminal = mode_.terminal_events();
+  const double left = end_time - time_;
+  const double until = std::min(left, settings_.flow.max_duration);
+  Progress progress = until > 0.0 ? flow.advance(until) : Progress::end_time;
+  while (progress == Progress::root && !contains(terminal, flow.fallen())) {
+    const VectorXd x = flow.state();
+    const Surface at = surface(mode_.field(), flow.fallen(), x);
+    const bool is_violation = contains(mode_.monitored, flow.fallen());
+    segment.marks.push_back({is_violation ? SegmentMark::Kind::violation : SegmentMark::Kind::section, flow.fallen(),
+                             time_ + flow.time(), at.h, at.rate, x});
+    progress = flow.advance(until);
+  }
+  segment.duration = flow.time();
+  segment.end = flow.state();
+  note_contacts(segment, flow);
+  if (settings_.samples > 0) thin(segment.samples, settings_.samples);
+  std::sort(segment.marks.begin(), segment.marks.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
+
+  if (progress == Progress::stopped) return stop(segment, SegmentEnd::interrupted, "interrupted");
+  if (progress == Progress::failed) return stop(segment, SegmentEnd::failed, flow.message());
+  if (progress == Progress::end_time && left <= settings_.flow.max_duration)
+    return stop(segment, SegmentEnd::end_time, "");
+  if (progress == Progress::end_time)
+    return stop(segment, SegmentEnd::no_event,
+                fmt::format("no event within {:g} time units after t = {:.10g}", settings_.flow.max_duration, time_));
+
+  std::vector<int> together{flow.fallen()};
+  for (const int event : terminal) {
+    if (event == flow.fallen() || !flow.is_armed(event)) continue;
+    const Surface at = surface(mode_.field(), event, segment.end);
+    if (at.is_near && at.rate < 0.0) together.push_back(event);
+  }
+  end_by(segment, together);
+}
+
+void HybridSimulation::end_by(SimulatedSegment& segment, const std::vector<int>& together) {
+  // The first in the mode's order has priority.
+  for (const IndexVector& index : mode_.index_vectors) {
+    if (!contains(together, index.event)) continue;
+    if (segment.index.field == 0)
+      segment.index = index;
+    else if (index.event != segment.index.event)
+      segment.simultaneous.push_back(index);
+  }
+  segment.after.resize(segment.end.size());
+  system_.value(FunctionKind::jump, segment.index.jump, segment.end.data(), par_.data(), segment.after.data());
+  const int ended = segment.index.event;
+  segment.event_velocity = surface(mode_.field(), ended, segment.end).rate;
+  if (!segment.after.allFinite())
+    return stop(segment, SegmentEnd::failed,
+                undefined_value(system_, FunctionKind::jump, segment.index.jump, segment.end.data()));
+  if (segment.event_velocity < 0.0 && surface(mode_.field(), ended, segment.after).rate > 0.0) walls_.insert(ended);
+  pending_.clear();
+  for (const IndexVector& other : segment.simultaneous) pending_.push_back(other.event);
+  last_ = segment.index;
+  last_rate_ = segment.event_velocity;
+  before_jump_ = segment.end;
+  is_cut_ = false;
+  x_ = segment.after;
+  time_ = segment.end_time();
+}
+
+}  // namespace tchat

@@ -1,0 +1,160 @@
+/// A hybrid system run forward in time, one segment after the other.
+///
+///     x' = f_i(x, p) until the first h_j of the current mode falls to zero,   x -> g_k(x, p),   next mode
+///
+/// What decides the next mode is in mode_rule.hpp. When two event functions come to zero together the first in the
+/// mode's order ends the segment and the other one, if the flow still goes through it after the jump, a segment of zero
+/// duration. What a start on a surface means is in surface_start.hpp. Trouble is a value:
+/// an integration that fails, an event after whose jump the flow leaves the region h >= 0 again at once (it sticks).
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "motion/event_watch.hpp"
+#include "motion/flow_options.hpp"
+#include "motion/mode_rule.hpp"
+#include "motion/surface_start.hpp"
+
+namespace tchat {
+
+class WatchedFlow;
+
+struct SimulationSettings {
+  FlowOptions flow;           ///< max_duration: give up waiting for an event after this time
+  StartSide side;             ///< of events on whose surface the start lies
+  double contact = 1e-3;      ///< a least value of h below this share of its largest value is a near-grazing contact
+  std::vector<int> sections;  ///< event functions whose falls are marked wherever they do not end the segment
+  std::size_t samples = 200;  ///< at most so many states are kept of each segment; 0 none
+  std::function<bool()> interrupted;
+  /// Told of every piece of the flow that has been passed: its field, x(t) inside it, and from when to when, counted
+  /// from the start of the segment.
+  std::function<void(int field, const DenseOutput& state, double from, double to)> on_piece;
+};
+
+enum class SegmentEnd {
+  event,
+  end_time,  ///< of the simulation
+  no_event,  ///< within max_duration
+  sticks,    ///< the flow would leave through the event that has just ended a segment
+  failed,    ///< a function cannot be evaluated, the integrator or iota gave up
+  interrupted,
+};
+
+struct Sample {
+  double time = 0.0;
+  Eigen::VectorXd state;
+};
+
+/// Something seen on the way that ended nothing.
+struct SegmentMark {
+  enum class Kind {
+    contact,    ///< h nearly zero at a minimum
+    section,    ///< one of `sections` fell through zero
+    violation,  ///< a monitored h fell below zero: no orbit of the model any more
+    beyond,     ///< h < 0 at the start of the segment, of an event with an impact
+  };
+  Kind kind = Kind::contact;
+  int event = 0;
+  double time = 0.0;
+  double h = 0.0;
+  double rate = 0.0;  ///< h_x f
+  Eigen::VectorXd state;
+};
+
+struct SimulatedSegment {
+  long number = 1;
+  Mode mode;
+  double start_time = 0.0;
+  double duration = 0.0;
+  Eigen::VectorXd start;
+  Eigen::VectorXd end;  ///< before the jump
+  SegmentEnd ended_by = SegmentEnd::event;
+  IndexVector index{0, 0, 0};             ///< the one whose event ended it
+  Eigen::VectorXd after;                  ///< g(end)
+  double event_velocity = 0.0;            ///< h_x f at the end
+  std::vector<IndexVector> simultaneous;  ///< others whose events came at the same time
+  std::vector<Sample> samples;            ///< start and end included
+  Eigen::VectorXd low, high;              ///< least and largest value of each state, whatever samples are kept
+  std::vector<SegmentMark> marks;
+  std::string message;  ///< why it did not end in an event
+
+  double end_time() const { return start_time + duration; }
+};
+
+class HybridSimulation {
+ public:
+  /// par has the room of the problem's ParameterLayout. The system behind `rule` outlives this object. Throws UserError
+  /// for a state of the wrong length or not finite, and when there is no first mode.
+  HybridSimulation(ModeRule rule, const Eigen::VectorXd& x0, const Eigen::VectorXd& par, SimulationSettings settings);
+  /// Continues behind the last event of `at`, as if it had been met in the state `end` (before its jump), with other
+  /// settings. Requires an event in `at`.
+  HybridSimulation(const HybridSimulation& at, const Eigen::VectorXd& end, SimulationSettings settings);
+
+  /// The next segment, or the part of it up to `end_time`. When one has not ended in an event there is nothing to go on
+  /// with.
+  SimulatedSegment next(double end_time);
+
+  const HybridSystem& system() const { return system_; }
+  const Eigen::VectorXd& parameters() const { return par_; }
+  double time() const { return time_; }
+  const Eigen::VectorXd& state() const { return x_; }
+  /// The index vector that ended the last segment; (0,0,0) before any.
+  const IndexVector& last_event() const { return last_; }
+  /// Of the last segment; before any, that of the start.
+  const Mode& mode() const { return mode_; }
+  /// Does it follow a signature?
+  bool is_cyclic() const { return rule_.is_cyclic(); }
+  /// Whether the state lies on the surface of this index vector's event and goes to h < 0 without being ended by it, as
+  /// after a section: nothing happens there until h has risen above zero.
+  bool leaves_downwards(const IndexVector& index) const;
+  /// Events of the first mode on whose surface the simulation began, and on which side of them.
+  const std::vector<SurfaceStart>& surface_starts() const { return surface_starts_; }
+
+ private:
+  /// h_j and h_x f under field i at x.
+  struct Surface {
+    double h = 0.0, rate = 0.0;
+    bool is_near = false;  // |h| within the tolerance for starts
+  };
+  Surface surface(int field, int event, const Eigen::VectorXd& x) const;
+  bool is_wall(const IndexVector& index, const Eigen::VectorXd& x) const;
+  bool begins() const { return last_.field == 0; }
+
+  SimulatedSegment begin_segment();
+  std::vector<int> due_at_start(const SimulatedSegment& segment) const;
+  bool sticks_at_start(SimulatedSegment& segment) const;
+  void mark_walls_behind(SimulatedSegment& segment) const;
+  std::vector<int> watched_events() const;
+  std::vector<int> events_begun_after() const;
+  void integrate(SimulatedSegment& segment, double end_time);
+  bool pass_piece(SimulatedSegment& segment, const WatchedFlow& flow, double from, double to);
+  void note_contacts(SimulatedSegment& segment, WatchedFlow& flow) const;
+  void end_by(SimulatedSegment& segment, const std::vector<int>& together);
+  void stop(SimulatedSegment& segment, SegmentEnd why, std::string message) const;
+
+  ModeRule rule_;
+  const HybridSystem& system_;
+  Eigen::VectorXd par_;
+  SimulationSettings settings_;
+
+  Mode mode_;
+  bool is_cut_ = false;  // the last segment has not ended in an event: mode_ is still that behind the last event
+  Eigen::VectorXd x_;
+  double time_ = 0.0;
+  long segments_ = 0;
+  std::vector<SurfaceStart> surface_starts_;
+  IndexVector last_{0, 0, 0};      // that ended the segment before
+  double last_rate_ = 0.0;         // h_x f there
+  Eigen::VectorXd before_jump_;    // the state there
+  std::vector<int> pending_;       // events that came together with it
+  std::set<int> walls_;            // events whose jumps have been seen to reverse h_x f
+  std::vector<int> watched_;       // events of the current segment
+  std::map<int, double> largest_;  // value of each event function so far
+};
+
+}  // namespace tchat

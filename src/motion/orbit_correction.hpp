@@ -1,0 +1,59 @@
+/// A periodic orbit near a motion, corrected by Newton's method on turns of the simulation itself, and whether the
+/// motion approaches it.
+///
+///     y - R(y) = 0,   (Id - M) dy = R(y) - y,   y moved onto the event's surface after each step
+///
+/// with R and M of motion/simulated_turn.hpp. A state that nothing depends on keeps its value and has no equation.
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <string>
+#include <vector>
+
+#include "motion/found_orbit.hpp"
+#include "motion/simulated_turn.hpp"
+
+namespace tchat {
+
+/// What a correction starts from.
+struct OrbitCandidate {
+  const HybridSimulation& motion;       ///< stands behind an event
+  Eigen::VectorXd end;                  ///< the state in which it was met, n
+  Signature signature;                  ///< the index vectors of the turn, the last one that of this event
+  Eigen::VectorXd scale;                ///< of each state, n; infinite where nothing depends on it
+  std::vector<Eigen::Index> ignorable;  ///< states that nothing depends on, from 0
+  SimulationSettings settings;          ///< of the corrected turn
+  std::vector<Eigen::VectorXd> passed;  ///< y of the turns before, in the order of time, the last one being `end`
+};
+
+struct CorrectedOrbit {
+  bool converged = false;
+  bool is_smooth = true;  ///< false: the motion's own turn has no derivative, so that nothing could be corrected
+  std::string fault;      ///< why it has not converged
+  Eigen::VectorXd end;    ///< y of the orbit
+  SimulatedTurn turn;     ///< from there
+  /// Largest modulus first, without those of ignorable states; one is 0, along the flow.
+  std::vector<std::complex<double>> multipliers;
+  double uncertainty = 0.0;  ///< of their moduli: the difference between two tolerances, and what the correction leaves
+  Eigen::VectorXd passed;    ///< R(y) of the motion's own y
+
+  OrbitStability stability() const { return stability_of(multipliers, uncertainty); }
+};
+
+CorrectedOrbit correct_orbit(const OrbitCandidate& candidate);
+
+/// The turn from y as accurately as it is corrected, with the samples and marks of the candidate's settings.
+SimulatedTurn turn_of(const OrbitCandidate& candidate, const Eigen::VectorXd& y);
+
+/// Does the motion approach this stable orbit? V(d) = sum over k of |D M^k d|^2, D = diag(1 / scale), falls from turn
+/// to turn where the orbit's linearisation M holds. V of the motion's distance d from the orbit must fall by half of
+/// what M predicts, at least, in the turns that follow, and in turns from states between the motion and the orbit, so
+/// that M holds all the way. A distance that integration cannot tell from zero is no distance.
+bool approaches(const OrbitCandidate& candidate, const CorrectedOrbit& orbit);
+
+/// Is the motion still leaving this unstable orbit? Its distance d has become about M d in each of the last turns, and
+/// has grown as the largest multiplier says. Its exponents are then those of the orbit.
+bool is_leaving(const OrbitCandidate& candidate, const CorrectedOrbit& orbit);
+
+}  // namespace tchat

@@ -1,0 +1,149 @@
+#include "motion/orbit_flow.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/user_error.hpp"
+#include "linear/dense_matrix.hpp"
+#include "model/finite_derivatives.hpp"
+
+namespace tchat {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::RowVectorXd;
+using Eigen::VectorXcd;
+using Eigen::VectorXd;
+
+/// Values and derivatives at a terminal point: f, h_x, h_p, g, g_x, g_p with h_p, g_p by the active parameters.
+struct EndPoint {
+  VectorXd f, g;
+  RowVectorXd hx, hp;
+  MatrixXd gx, gp;
+  double velocity = 0.0;  // h_x f
+
+  EndPoint(const HybridSystem& system, const IndexVector& index, const VectorXd& x, const VectorXd& par,
+           const std::vector<int>& active)
+      : f(x.size()), g(x.size()), hx(x.size()), hp(active.size()), gx(x.size(), x.size()), gp(x.size(), active.size()) {
+    double h = 0.0;
+    system.value(FunctionKind::field, index.field, x.data(), par.data(), f.data());
+    system.first(FunctionKind::event, index.event, x.data(), par.data(), active, &h, hx.data(), hp.data());
+    system.first(FunctionKind::jump, index.jump, x.data(), par.data(), active, g.data(), gx.data(), gp.data());
+    velocity = hx.dot(f);
+  }
+
+  /// False at grazing to rounding, and where a function cannot be evaluated.
+  bool is_transversal() const { return std::abs(velocity) > 1e-14 * hx.norm() * f.norm(); }
+};
+
+VectorXcd sorted_eigenvalues(const MatrixXd& m) {
+  if (!m.allFinite()) return VectorXcd::Constant(m.rows(), NAN);
+  VectorXcd values = eigenvalues(m);
+  std::sort(values.begin(), values.end(), [](const auto& a, const auto& b) {
+    const double difference = std::abs(a) - std::abs(b);
+    return difference != 0.0 ? difference > 0.0 : a.imag() > b.imag();
+  });
+  return values;
+}
+
+/// Adds one segment to a return map that has come to x; moves x to the next start. False with a message on failure.
+bool add_segment(const HybridSystem& system, const IndexVector& index, const VectorXd& par, const FlowOptions& options,
+                 VectorXd& x, ReturnMap& map) {
+  const std::size_t number = map.segments.size() + 1;
+  const SegmentFlow flow = integrate_segment(system, index, x, par, options);
+  if (flow.status != FlowStatus::event_reached) {
+    map.message = fmt::format("segment {}: {}", number, flow.message);
+    return false;
+  }
+  const EndPoint end(system, index, flow.end_state, par, options.active);
+  for (const auto& [kind, number_of] : {std::pair(FunctionKind::event, index.event), {FunctionKind::jump, index.jump}})
+    if (!has_finite_derivatives(system, kind, number_of, flow.end_state.data(), par.data())) {
+      map.message =
+          fmt::format("segment {}: {}", number, no_finite_derivatives(system, kind, number_of, flow.end_state));
+      return false;
+    }
+  if (!end.is_transversal()) {
+    map.message = fmt::format("segment {} ends tangentially to the event surface, the map has no derivative", number);
+    return false;
+  }
+  const MatrixXd projection = MatrixXd::Identity(x.size(), x.size()) - end.f * end.hx / end.velocity;
+  const MatrixXd segment_derivative = projection * flow.jacobian;
+  map.parameter_derivative = end.gx * (projection * flow.parameter_derivative - end.f * end.hp / end.velocity +
+                                       segment_derivative * map.parameter_derivative) +
+                             end.gp;
+  map.derivative = end.gx * segment_derivative * map.derivative;
+  map.segments.push_back({x, flow.end_state, flow.duration, end.velocity, flow.jacobian, segment_derivative});
+  map.period += flow.duration;
+  x = end.g;
+  return true;
+}
+
+void require_signature(const HybridSystem& system, const Signature& signature) {
+  if (signature.empty()) throw UserError("integration: the signature is empty, one index vector at least is needed.");
+  for (const IndexVector& index : signature)
+    if (index.jump < 1 || index.jump > system.count(FunctionKind::jump))
+      throw UserError(fmt::format("integration: jump {} does not exist, {} has 1..{}.", index.jump, system.name(),
+                                  system.count(FunctionKind::jump)));
+}
+
+}  // namespace
+
+ReturnMap return_map(const HybridSystem& system, const Signature& signature, const VectorXd& x1,
+                     const VectorXd& par_given, const FlowOptions& given) {
+  require_signature(system, signature);
+  FlowOptions options = given;
+  options.variational = true;
+  const VectorXd par = full_parameters(system, par_given);
+
+  ReturnMap map;
+  map.derivative = MatrixXd::Identity(system.dimension(), system.dimension());
+  map.parameter_derivative = MatrixXd::Zero(system.dimension(), static_cast<Eigen::Index>(options.active.size()));
+  VectorXd x = x1;
+  for (const IndexVector& index : signature)
+    if (!add_segment(system, index, par, options, x, map)) return map;
+  map.end = x;
+  map.multipliers = sorted_eigenvalues(map.derivative);
+  map.ok = map.end.allFinite() && map.derivative.allFinite();
+  if (!map.ok) map.message = "the last jump cannot be evaluated";
+  return map;
+}
+
+PeriodicOrbit shoot(const HybridSystem& system, const Signature& signature, const VectorXd& guess, const VectorXd& par,
+                    const ShootingOptions& options) {
+  PeriodicOrbit orbit;
+  orbit.start = guess;
+  double last_step = INFINITY;
+  while (true) {
+    orbit.map = return_map(system, signature, orbit.start, par, options.flow);
+    if (!orbit.map.ok) {
+      orbit.message = orbit.map.message;
+      return orbit;
+    }
+    VectorXd residual = orbit.start - orbit.map.end;
+    for (const Eigen::Index k : options.ignorable) residual(k) = 0.0;
+    orbit.residual = residual.lpNorm<Eigen::Infinity>();
+    orbit.converged = last_step <= options.tolerance;
+    if (orbit.converged) return orbit;
+    if (orbit.iterations == options.max_iterations || !std::isfinite(orbit.residual)) {
+      orbit.message = fmt::format("no convergence in {} Newton steps, residual {:.2e}, last step {:.2e}",
+                                  orbit.iterations, orbit.residual, last_step);
+      return orbit;
+    }
+    MatrixXd matrix = MatrixXd::Identity(residual.size(), residual.size()) - orbit.map.derivative;
+    for (const Eigen::Index k : options.ignorable) matrix.row(k) = VectorXd::Unit(residual.size(), k).transpose();
+    const VectorXd step = -solve_with_complete_pivoting(matrix, residual);
+    last_step = step.lpNorm<Eigen::Infinity>() / (1.0 + orbit.start.lpNorm<Eigen::Infinity>());
+    orbit.start += step;
+    ++orbit.iterations;
+    if (!orbit.start.allFinite()) {
+      orbit.message = fmt::format("Newton step {} is not finite: Id - M is singular", orbit.iterations);
+      return orbit;
+    }
+  }
+}
+
+}  // namespace tchat

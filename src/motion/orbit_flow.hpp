@@ -1,0 +1,68 @@
+/// Return maps and periodic orbits of a signature by forward integration (shooting), independent of collocation.
+///
+///     x_s(0) -> x_s(1) by field i_s to event j_s,   x_{s+1}(0) = g_{k_s}(x_s(1), p),
+///     P_s = (Id - f h_x / (h_x f)) Phi_s,            M = g_{k_m,x} P_m ... g_{k_1,x} P_1         (2.26)
+///
+/// The eigenvalues of M are the Floquet multipliers of a periodic orbit; one is zero (along the flow). Parameter
+/// derivatives of the map count the change of the durations and of the jumps.
+///
+/// What cannot be computed (no event, h_x f = 0 at an end, no convergence) is a value of the result. UserError as for
+/// integrate_segment, and for an empty signature.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "motion/segment_flow.hpp"
+
+namespace tchat {
+
+struct MapSegment {
+  Eigen::VectorXd start;           ///< x_s(0)
+  Eigen::VectorXd end;             ///< x_s(1), before the jump
+  double duration = 0.0;           ///< T_s
+  double event_velocity = 0.0;     ///< h_x f at the end
+  Eigen::MatrixXd flow_jacobian;   ///< Phi_s, n x n
+  Eigen::MatrixXd map_derivative;  ///< P_s, n x n
+};
+
+struct ReturnMap {
+  bool ok = false;
+  std::string message;  ///< why not ok, naming the segment (from 1)
+  std::vector<MapSegment> segments;
+  Eigen::VectorXd end;                   ///< state after the last jump, n
+  double period = 0.0;                   ///< sum of the durations
+  Eigen::MatrixXd derivative;            ///< M, n x n
+  Eigen::MatrixXd parameter_derivative;  ///< d end / d PAR(active), n x active
+  Eigen::VectorXcd multipliers;          ///< eigenvalues of M, largest modulus first
+};
+
+/// One turn through the signature from x1 = x_1(0).
+ReturnMap return_map(const HybridSystem& system, const Signature& signature, const Eigen::VectorXd& x1,
+                     const Eigen::VectorXd& par, const FlowOptions& options = {});
+
+struct ShootingOptions {
+  FlowOptions flow;
+  int max_iterations = 20;
+  double tolerance = 1e-11;  ///< on |Newton step| / (1 + |x|), of the last step taken
+  /// States that nothing depends on and that need not return (a position on an endless floor), from 0: kept at their
+  /// start, and without an equation.
+  std::vector<Eigen::Index> ignorable;
+};
+
+struct PeriodicOrbit {
+  bool converged = false;
+  std::string message;    ///< why not
+  int iterations = 0;     ///< Newton steps taken
+  double residual = 0.0;  ///< |x1 - return map(x1)|, maximum norm
+  Eigen::VectorXd start;  ///< x_1(0)
+  ReturnMap map;          ///< at `start`
+};
+
+/// Newton's method on x1 - R(x1) = 0 with the matrix Id - M. The signature's own events fix the phase, so the matrix
+/// is regular away from folds and branch points.
+PeriodicOrbit shoot(const HybridSystem& system, const Signature& signature, const Eigen::VectorXd& guess,
+                    const Eigen::VectorXd& par, const ShootingOptions& options = {});
+
+}  // namespace tchat

@@ -1,0 +1,113 @@
+#include "motion/tangent_flow.hpp"
+
+#include <cmath>
+
+namespace tchat {
+
+namespace {
+
+using Eigen::MatrixXd;
+
+// The error of sixth order that goes with it is about this to the power 7/5.
+constexpr double most_difference = 1e-8;
+// The error of Gauss' quadrature of A is h^7 / 2016000 times its sixth derivative: next to h = 0.3 times the scale of
+// time on which A of size 1 changes, 1e-10.
+constexpr double most_slope = 0.3;  // of h^2 A'
+constexpr double most_bend = 0.01;  // of h^3 A'' / 2
+// exp(Omega) V then loses two digits at most, and the shortest direction of V seven between two orthonormalisations.
+constexpr double most_norm = 4.0;
+constexpr double most_stretched = 4.0;
+constexpr double shortest_share = 1e-12;  // of a piece, that a step is halved to
+// Of one piece, which is a step of the integration. Far from all orbits a state may be so large that it would take
+// years.
+constexpr int most_steps = 100'000;
+
+void commutator(const MatrixXd& a, const MatrixXd& b, MatrixXd& out) {
+  out.noalias() = a * b;
+  out.noalias() -= b * a;
+}
+
+}  // namespace
+
+TangentFlow::TangentFlow(const HybridSystem& system, const Eigen::VectorXd& par)
+    : system_(system), par_(par), f_(system.dimension()) {
+  for (MatrixXd* const m : {&first_, &middle_, &last_, &a1_, &a2_, &a3_, &c1_, &c2_, &b_, &omega_})
+    m->resize(system.dimension(), system.dimension());
+}
+
+bool TangentFlow::evaluate(int field, const double* x, MatrixXd& out) {
+  double no_parameters = 0.0;
+  system_.first(FunctionKind::field, field, x, par_.data(), {}, f_.data(), out.data(), &no_parameters);
+  return all_finite(out.data(), static_cast<int>(out.size()));
+}
+
+bool TangentFlow::series(int field, const DenseOutput& state, double from, double step) {
+  const double root = std::sqrt(15.0);
+  if (!evaluate(field, state(from + (0.5 - root / 10.0) * step), first_)) return false;
+  if (!evaluate(field, state(from + 0.5 * step), middle_)) return false;
+  if (!evaluate(field, state(from + (0.5 + root / 10.0) * step), last_)) return false;
+  a1_ = step * middle_;
+  a2_ = (root / 3.0 * step) * (last_ - first_);
+  a3_ = (10.0 / 3.0 * step) * (last_ - 2.0 * middle_ + first_);
+  commutator(a1_, a2_, c1_);
+  b_ = 2.0 * a3_ + c1_;
+  commutator(a1_, b_, c2_);
+  c2_ = a2_ - c2_ / 60.0;
+  b_ = -20.0 * a1_ - a3_ + c1_;
+  commutator(b_, c2_, omega_);
+  omega_ /= 240.0;
+  difference_ = (omega_ + c1_ / 12.0).norm();
+  changes_ = std::max(a2_.norm() / most_slope, a3_.norm() / most_bend);
+  omega_ += a1_ + a3_ / 12.0;
+  norm_ = omega_.norm();
+  return true;
+}
+
+void TangentFlow::apply_exponential(MatrixXd& vectors) {
+  term_ = vectors;
+  const double enough = 0.1 * std::numeric_limits<double>::epsilon();
+  for (int k = 1; k < 60; ++k) {
+    product_.noalias() = omega_ * term_;
+    term_ = product_ / static_cast<double>(k);
+    vectors += term_;
+    if (!(term_.lpNorm<Eigen::Infinity>() > enough * vectors.lpNorm<Eigen::Infinity>())) return;
+  }
+}
+
+bool TangentFlow::carry(OrthonormalFrame& frame, int field, const DenseOutput& state, double from, double to) {
+  return carry(frame.vectors(), field, state, from, to, [&] {
+    stretched_ += norm_;
+    if (stretched_ <= most_stretched) return;
+    frame.orthonormalise();
+    stretched_ = 0.0;
+  });
+}
+
+bool TangentFlow::carry(MatrixXd& vectors, int field, const DenseOutput& state, double from, double to) {
+  return carry(vectors, field, state, from, to, [] {});
+}
+
+template <class Stretched>
+bool TangentFlow::carry(MatrixXd& vectors, int field, const DenseOutput& state, double from, double to,
+                        const Stretched& stretched) {
+  const double shortest = shortest_share * (to - from);
+  double step = to - from;
+  int steps = 0;
+  for (double t = from; t < to;) {
+    if (++steps > most_steps) return false;
+    const bool is_last = t + step >= to - shortest;
+    if (is_last) step = to - t;
+    if (!series(field, state, t, step)) return false;
+    if ((difference_ > most_difference || changes_ > 1.0 || norm_ > most_norm) && step > shortest) {
+      step *= 0.5;
+      continue;
+    }
+    apply_exponential(vectors);
+    stretched();
+    t = is_last ? to : t + step;
+    if (difference_ < 0.01 * most_difference && changes_ < 0.1 && norm_ < 0.5 * most_norm) step *= 2.0;
+  }
+  return true;
+}
+
+}  // namespace tchat

@@ -1,0 +1,58 @@
+/// Tangent vectors carried along a known trajectory x(t) of a field: V' = A(t) V, A(t) = f_x(x(t), p).
+///
+/// One step is V -> exp(Omega) V with Omega the Magnus series to sixth order from A at the three Gauss points (Blanes,
+/// Casas, Oteo and Ros, Physics Reports 470, 2009, section 5.4): with h the step, A_1, A_2, A_3 in order,
+///
+///     a1 = h A_2,   a2 = sqrt(15)/3 h (A_3 - A_1),   a3 = 10/3 h (A_3 - 2 A_2 + A_1),
+///     C1 = [a1, a2],   C2 = -1/60 [a1, 2 a3 + C1],
+///     Omega = a1 + a3 / 12 + 1/240 [-20 a1 - a3 + C1, a2 + C2].
+///
+/// Exact, whatever the step, where A is constant. To fourth order the last term is -1/12 [a1, a2]; where the difference
+/// of both is too large, or A changes too much for its quadrature, or |h A| is so large that columns would become
+/// parallel, the step is halved. Allocates nothing
+/// after construction.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "model/hybrid_system.hpp"
+#include "motion/event_watch.hpp"
+#include "motion/qr_accumulator.hpp"
+
+namespace tchat {
+
+class TangentFlow {
+ public:
+  /// Views of `system` and `par`, which outlive this object.
+  TangentFlow(const HybridSystem& system, const Eigen::VectorXd& par);
+
+  /// Carries `frame` from one time to the next, and makes it orthonormal where it may have lost some digits. False when
+  /// f_x has no finite value on the way, or is so large that it takes too many steps; the frame is then as far as it
+  /// came.
+  bool carry(OrthonormalFrame& frame, int field, const DenseOutput& state, double from, double to);
+  /// V -> Phi V for n x K vectors, Phi the Jacobian of the flow from one time to the next. False as above.
+  bool carry(Eigen::MatrixXd& vectors, int field, const DenseOutput& state, double from, double to);
+  /// The frame has been made orthonormal by others.
+  void restart() { stretched_ = 0.0; }
+
+ private:
+  template <class Stretched>
+  bool carry(Eigen::MatrixXd& vectors, int field, const DenseOutput& state, double from, double to,
+             const Stretched& stretched);
+  bool series(int field, const DenseOutput& state, double from, double step);
+  bool evaluate(int field, const double* x, Eigen::MatrixXd& out);
+  void apply_exponential(Eigen::MatrixXd& vectors);
+
+  const HybridSystem& system_;
+  const Eigen::VectorXd& par_;
+  double stretched_ = 0.0;                      // sum of |Omega| since the frame was orthonormal
+  double norm_ = 0.0, difference_ = 0.0;        // of Omega; from fourth order
+  double changes_ = 0.0;                        // of A over the step, as a share of what is allowed
+  Eigen::MatrixXd first_, middle_, last_;       // A
+  Eigen::MatrixXd a1_, a2_, a3_, c1_, c2_, b_;  // as above
+  Eigen::MatrixXd omega_, term_, product_;
+  Eigen::VectorXd f_;
+};
+
+}  // namespace tchat

@@ -1,0 +1,103 @@
+#include "orbit/admissibility.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "linear/array_kernel.hpp"
+#include "model/event_at.hpp"
+#include "orbit/event_minima.hpp"
+#include "orbit/sliding_violations.hpp"
+#include "orbit/transversality.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// Between nodes h counts as negative beyond this share of its size, which rounding and a located point do not reach.
+constexpr double surely_negative = 1e-6;
+
+}  // namespace
+
+std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signature& signature,
+                                         const std::vector<std::vector<int>>& monitored, const Orbit& x,
+                                         const std::vector<EventCourse>& courses, const CollocationRule& rule,
+                                         double error, double leaving) {
+  std::vector<Violation> result;
+  const int m = x.shape.segments;
+  const double* par = x.par.data();
+  const double error_of_states = error * (1.0 + array_functions().range(x.states.data(), x.states.size()).largest);
+  const double period = std::abs(x.period());
+  auto course_of_event = courses.begin();
+  for (int s = 0; s < m; ++s) {
+    const auto index = static_cast<std::size_t>(s);
+    const IndexVector& v = signature[index];
+    if (x.duration(s) < -orbit_accuracy * period)
+      result.push_back({Violation::negative_duration, s + 1, 0, 0.0, x.duration(s)});
+
+    for (const int event : monitored[index]) {
+      Violation worst{Violation::event_crossed, x.shape.stored_nodes() == 1 ? 0 : s + 1, event, 0.0, 0.0};
+      const EventCourse& course = *course_of_event++;
+      const double scale = scale_of(system, x, course);
+      const bool leaves_out_start = course.at_nodes(0) < 0.0 && is_pinned_start(system, signature, x, s, event, scale);
+      const int last = x.shape.nodes_of(s) - (event == v.event ? 2 : 1);
+      for (int k = leaves_out_start ? 1 : 0; k <= last; ++k)
+        if (const double h = course.at_nodes(k); h < worst.value) worst.value = h, worst.tau = x.tau(s, k);
+      for (const EventMinimum& dip : polished_minima(system, signature, rule, x, course, -surely_negative * scale)) {
+        const double uncertainty =
+            2.0 * error_of_states * event_at(system, event, dip.state.data(), par).gradient.lpNorm<1>();
+        if (dip.value < std::min(worst.value, -std::max(surely_negative * scale, uncertainty)))
+          worst.value = dip.value, worst.tau = dip.tau;
+      }
+      if (worst.value < -orbit_accuracy * scale) result.push_back(worst);
+    }
+
+    add_sliding_violations(result, system, signature, monitored[index], x, s, leaving);
+
+    if (v.event == no_function) continue;
+    const Crossing end = crossing_of_event(system, v.event, v.field, x.end(s), par);
+    if (end.rate > leaving * end.sizes)
+      result.push_back({Violation::leaving_terminal_surface, s + 1, v.event, 1.0, end.rate});
+  }
+  return result;
+}
+
+std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signature& signature,
+                                         const std::vector<std::vector<int>>& monitored, const Orbit& x,
+                                         const CollocationRule& rule, double error, double leaving) {
+  return inadmissibilities(system, signature, monitored, x, event_courses(system, signature, monitored, rule, x), rule,
+                           error, leaving);
+}
+
+std::string describe(const Violation& violation, const HybridSystem& system) {
+  switch (violation.kind) {
+    case Violation::negative_duration:
+      return fmt::format("segment {}: negative duration {:.4g}", violation.segment, violation.value);
+    case Violation::event_crossed:
+      if (violation.segment == 0)
+        return fmt::format("h{} ({}) = {:.4g} at the equilibrium", violation.event,
+                           system.function_name(FunctionKind::event, violation.event), violation.value);
+      return fmt::format("segment {}: h{} ({}) = {:.4g} at tau = {:.4g}", violation.segment, violation.event,
+                         system.function_name(FunctionKind::event, violation.event), violation.value, violation.tau);
+    case Violation::off_surface:
+      return fmt::format("segment {} slides beside its surface: h{} ({}) = {:.4g} at its start", violation.segment,
+                         violation.event, system.function_name(FunctionKind::event, violation.event), violation.value);
+    case Violation::side_leads_away:
+      return fmt::format(
+          "segment {} slides where field {} ({}) leads away from the surface, |h_x f| = {:.4g} at its start",
+          violation.segment, violation.event, system.function_name(FunctionKind::field, violation.event),
+          violation.value);
+    case Violation::crosses_where_it_slides:
+      return fmt::format(
+          "segment {} begins on a surface that its field {} ({}) leads back to, |h_x f| = {:.4g}: the orbit slides "
+          "there",
+          violation.segment, violation.event, system.function_name(FunctionKind::field, violation.event),
+          violation.value);
+    default:
+      return fmt::format("segment {}: h_x f = {:.4g} > 0 at its end, h{} ({}) is crossed from below", violation.segment,
+                         violation.value, violation.event, system.function_name(FunctionKind::event, violation.event));
+  }
+}
+
+}  // namespace tchat

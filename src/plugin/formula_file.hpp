@@ -1,0 +1,76 @@
+/// A file of formulas as it is written: its statements, sorted, with nothing checked between them.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "plugin/expression.hpp"
+#include "plugin/tokens.hpp"
+
+namespace tchat::formulas {
+
+/// par a = 1, x' = v, v -> -r*v, event wall = 1 - x, aux E = v^2: a name and what it is.
+struct Assignment {
+  Token name;
+  Expression value;
+};
+
+/// f(a, b) = a*b
+struct FunctionDefinition {
+  Token name;
+  std::vector<Token> arguments;
+  Expression body;
+};
+
+/// field NAME or jump NAME with the lines that belong to it.
+struct Block {
+  Token name;
+  std::vector<Assignment> lines;
+  std::optional<Token> target = {};  ///< jump NAME to FIELD
+};
+
+/// mode FIELD: states a, b, c: the states that the field has, of all the first ones.
+struct ModeStatement {
+  Token field;
+  std::vector<Token> states;
+};
+
+/// slide NAME on SURFACE: EVENT -> FIELD, EVENT -> FIELD: the field NAME slides where the event SURFACE is 0, until one
+/// of two events leads to the field below it (first) or above it. NAME and both events are made by the statement.
+struct SlideStatement {
+  Token name;
+  Token surface;
+  std::array<std::pair<Token, Token>, 2> ends;  ///< event, field: below, above
+};
+
+/// after FROM... [if CONDITION]: [FIELD until] EVENT -> JUMP, ...
+struct SuccessorLine {
+  Position at;
+  std::vector<Token> from;
+  std::optional<Expression> condition;
+  std::optional<Token> field;
+  std::vector<std::pair<Token, Token>> ends;  ///< event, jump
+};
+
+struct FormulaFile {
+  std::vector<Assignment> parameters;
+  std::vector<Assignment> initial;
+  std::vector<Assignment> definitions;
+  std::vector<FunctionDefinition> functions;
+  std::vector<Assignment> shared_equations;  ///< those before the first field
+  std::vector<Block> fields;
+  std::vector<ModeStatement> modes;
+  std::vector<Assignment> events;
+  std::vector<Block> jumps;
+  std::vector<SlideStatement> slides;
+  std::vector<SuccessorLine> successors;
+  std::vector<Assignment> user_values;
+};
+
+/// Reads all statements; mistakes are collected, the statements that have them left out.
+FormulaFile read_formula_file(std::string_view text, FormulaErrors& errors);
+
+}  // namespace tchat::formulas

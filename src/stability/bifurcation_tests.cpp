@@ -1,0 +1,227 @@
+#include "stability/bifurcation_tests.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "model/identity_jump.hpp"
+#include "orbit/condensed_system.hpp"
+#include "orbit/no_duration.hpp"
+#include "orbit/transversality.hpp"
+#include "stability/label_evidence.hpp"
+#include "stability/normal_form_text.hpp"
+
+namespace tchat {
+
+namespace {
+
+/// A pair whose imaginary parts are smaller, relatively, is real.
+constexpr double complex_level = 1e-7;
+
+bool trusted(const FloquetMultipliers& multipliers) {
+  return multipliers.valid && multipliers.structural <= structural_bound;
+}
+
+const MultiplierProduct& product_of(const FloquetMultipliers& multipliers, int target) {
+  return target > 0 ? multipliers.with_one : multipliers.with_minus_one;
+}
+
+bool is_upper(const std::complex<double>& mu) { return mu.imag() > complex_level * std::abs(mu); }
+
+/// Does segment s end in a mere cut: identity jump, the same field after it?
+bool is_section(const DefiningSystem& system, int s) {
+  const Signature& signature = system.signature();
+  const IndexVector& index = signature[static_cast<std::size_t>(s)];
+  return index.field == signature[static_cast<std::size_t>((s + 1) % system.segments())].field &&
+         is_identity_jump(system.system(), index);
+}
+
+/// A fold located to EPSS has this multiplier nearer to 1.
+bool has_multiplier_one(const FloquetMultipliers& multipliers) {
+  const auto list = multipliers.nontrivial();
+  return std::any_of(list.begin(), list.end(), [](const auto& mu) { return std::abs(mu - 1.0) < 1e-3; });
+}
+
+/// Visits the upper multiplier of every complex pair except the pair nearest to `known`. Allocates nothing.
+template <class Visit>
+void for_pairs(const TestedPoint& point, const std::optional<std::complex<double>>& known, const Visit& visit) {
+  const std::complex<double>* left_out = nullptr;
+  for (const auto& mu : point.multipliers.values)
+    if (known && is_upper(mu) && (left_out == nullptr || std::abs(mu - *known) < std::abs(*left_out - *known)))
+      left_out = &mu;
+  for (const auto& mu : point.multipliers.values)
+    if (is_upper(mu) && &mu != left_out) visit(mu);
+}
+
+}  // namespace
+
+std::string state_text(const HybridSystem& system, const Orbit& orbit, const double* state) {
+  const Eigen::VectorXd uncertainty = state_uncertainty(orbit);
+  std::string text;
+  for (int k = 1; k <= system.dimension(); ++k)
+    text += fmt::format("{}{} = {:.10g}", k > 1 ? ", " : "", system.state_name(k),
+                        std::abs(state[k - 1]) > uncertainty(k - 1) ? state[k - 1] : 0.0);
+  return text;
+}
+
+TestValue multiplier_product(const TestedPoint& point, int target) {
+  if (!trusted(point.multipliers)) return TestValue::undefined();
+  const double nearest = multiplier_distance(point.multipliers, target);
+  const double accuracy = multiplier_accuracy(point.multipliers);
+  const MultiplierProduct& product = product_of(point.multipliers, target);
+  const double level = nearest > 0.0 ? accuracy * std::abs(product.value) / nearest : accuracy;
+  return TestValue::of(product.value, std::max(level, product.uncertainty));
+}
+
+bool is_multiplier_at(const TestedPoint& point, int target) {
+  return multiplier_distance(point.multipliers, target) <= agreeing_multiplier;
+}
+
+FoldTest::FoldTest(int parameter, const std::vector<int>& free_parameters, const ParameterLayout& layout, int segments,
+                   bool stop, PointType type, std::string held)
+    : is_duration_(layout.is_duration(parameter, segments)),
+      is_monitor_(parameter >= layout.first_monitor(segments)),
+      stop_(stop),
+      type_(type),
+      held_(std::move(held)) {
+  index_ = is_duration_
+               ? layout.duration_segment(parameter)
+               : std::find(free_parameters.begin(), free_parameters.end(), parameter) - free_parameters.begin();
+}
+
+TestValue FoldTest::evaluate(const TestedPoint& point) const {
+  constexpr double level = 1e-10;  // of a tangent of unit length, which Newton's tolerances leave
+  if (is_monitor_) return TestValue::of(point.principal_rate, level);
+  return TestValue::of(is_duration_ ? point.tangent.durations(index_) : point.tangent.globals(index_), level);
+}
+
+/// The branch also turns where h_x f = 0: at a section that becomes tangent its two ways through the orbit meet, while
+/// the orbits go on, and in the plane so it is at grazing. A fold of orbits has the multiplier +1.
+SpecialPoint FoldTest::classify(const TestedPoint& point, bool) const {
+  const DefiningSystem& system = point.condensed.system();
+  const int s = touching_segment(point);
+  const bool is_fold = has_multiplier_one(point.multipliers);
+  const bool of_orbits = type_ == PointType::fold && system.orbits() == 1 && !point.multipliers.are_eigenvalues;
+  if (is_monitor_ && of_orbits && point.multipliers.valid && !is_fold)
+    return {PointType::user, {UserPointKind::extremum}, stop_, "extremum of ICP(1) along the branch"};
+  if (!held_.empty()) return {type_, {}, stop_, "fold of the curve with " + held_ + " held"};
+  if (is_monitor_ && !is_fold) return {type_, {}, stop_, "fold, or extremum of ICP(1) along the branch"};
+  const bool has_form = is_fold || point.multipliers.are_eigenvalues;
+  if (s < 0 || is_fold) return {type_, {}, stop_, "fold", {}, has_form ? fold_text(point) : ""};
+  return {PointType::user,
+          {UserPointKind::impact_velocity, s + 1, system.signature()[static_cast<std::size_t>(s)].event, 1.0},
+          stop_,
+          fmt::format("turning point of the branch, no fold of orbits: h_x f = 0 at the end of segment {}", s + 1)};
+}
+
+/// A duration or a monitor in place of the parameter turns without a multiplier +1, and so does a curve of orbits on
+/// which something is held.
+std::string FoldTest::objection(const TestedPoint& point) const {
+  if (is_duration_ || is_monitor_ || !held_.empty()) return "";
+  return objection_without_multiplier(point, 1, "the parameter turns");
+}
+
+TestValue BranchPointTest::evaluate(const TestedPoint& point) const {
+  constexpr double level = 1e-13;  // what rounding makes of a singular matrix
+  return TestValue::of(point.singular_distance, level);
+}
+
+std::string BranchPointTest::objection(const TestedPoint& point) const {
+  return objection_without_multiplier(point, 1, "the determinant changes sign");
+}
+
+SpecialPoint BranchPointTest::classify(const TestedPoint& point, bool) const {
+  return {type_, {}, stop_, "branch point", {}, branch_point_text(point)};
+}
+
+TestValue PeriodDoublingTest::evaluate(const TestedPoint& point) const { return multiplier_product(point, -1); }
+
+std::string PeriodDoublingTest::objection(const TestedPoint& point) const {
+  return objection_without_multiplier(point, -1, "the product of (multiplier + 1) changes sign");
+}
+
+bool PeriodDoublingTest::is_genuine(const TestedPoint& point) const { return is_multiplier_at(point, -1); }
+
+SpecialPoint PeriodDoublingTest::classify(const TestedPoint& point, bool) const {
+  return {PointType::period_doubling, {}, stop_, "period doubling", {}, normal_form_text(point, -1.0)};
+}
+
+std::optional<std::complex<double>> nearest_pair(const TestedPoint& point, std::optional<std::complex<double>> known) {
+  std::optional<std::complex<double>> nearest;
+  for_pairs(point, known, [&](const std::complex<double>& mu) {
+    if (!nearest || std::abs(std::abs(mu) - 1.0) < std::abs(std::abs(*nearest) - 1.0)) nearest = mu;
+  });
+  return nearest;
+}
+
+TestValue pair_distance(const TestedPoint& point, std::optional<std::complex<double>> known) {
+  if (!trusted(point.multipliers) || !point.multipliers.determined()) return TestValue::undefined();
+  const std::optional<std::complex<double>> nearest = nearest_pair(point, known);
+  if (!nearest) return TestValue::undefined();
+  double sign = 1.0;
+  for_pairs(point, known, [&](const std::complex<double>& mu) {
+    if (std::abs(mu) < 1.0) sign = -sign;
+  });
+  return TestValue::of(sign * std::abs(std::abs(*nearest) - 1.0), multiplier_accuracy(point.multipliers));
+}
+
+TestValue TorusTest::evaluate(const TestedPoint& point) const { return pair_distance(point); }
+
+SpecialPoint TorusTest::classify(const TestedPoint& point, bool) const {
+  const std::optional<std::complex<double>> mu = nearest_pair(point);
+  const std::string remark = mu ? normal_form_text(point, *mu / std::abs(*mu)) : "";
+  return {PointType::torus,
+          {},
+          stop_,
+          fmt::format("torus bifurcation, angle {:.10g}", mu ? std::arg(*mu) : 0.0),
+          {},
+          remark};
+}
+
+ImpactVelocityTest::ImpactVelocityTest(const DefiningSystem& system, int segment, bool stop)
+    : system_(system), segment_(segment), stop_(stop) {}
+
+std::string ImpactVelocityTest::name() const { return fmt::format("h_x f at the end of segment {}", segment_ + 1); }
+
+TestValue ImpactVelocityTest::evaluate(const TestedPoint& point) const {
+  const Crossing crossing = crossing_at_end(system_, point.orbit, segment_);
+  return TestValue::of(crossing.rate, no_transversality * crossing.sizes);
+}
+
+/// Of a contact segment that lasts no time both ends vanish: the label names the one where it begins.
+SpecialPoint ImpactVelocityTest::lost_contact(const TestedPoint& point, int contact, bool ends_branch) const {
+  const int m = system_.segments();
+  const int before = (contact + m - 1) % m;
+  const HybridSystem& system = system_.system();
+  const IndexVector& entered = system_.signature()[static_cast<std::size_t>(before)];
+  const int field = system_.signature()[static_cast<std::size_t>(contact)].field;
+  return {
+      PointType::user,
+      {UserPointKind::impact_velocity, before + 1, entered.event, 1.0},
+      ends_branch,
+      fmt::format("grazing: segment {} ({}), the contact after event {} ({}) of segment {}, has shrunk to T = 0, {}; "
+                  "orbits without it: tchat resegment --to signature",
+                  contact + 1, system.function_name(FunctionKind::field, field), entered.event,
+                  system.function_name(FunctionKind::event, entered.event), before + 1,
+                  state_text(system, point.orbit, point.orbit.end(before)))};
+}
+
+SpecialPoint ImpactVelocityTest::classify(const TestedPoint& point, bool rising) const {
+  for (const int s : {segment_, (segment_ + 1) % system_.segments()})
+    if (system_.is_contact_segment(s) && contact_lasts_no_time(point.orbit, s))
+      return lost_contact(point, s, stop_ && rising);
+  const int event = system_.signature()[static_cast<std::size_t>(segment_)].event;
+  return {PointType::user,
+          {UserPointKind::impact_velocity, segment_ + 1, event, 1.0},
+          stop_ && rising,
+          fmt::format("{}: h_x f = 0 at the end of segment {}, event {} ({}), {}",
+                      is_section(system_, segment_)
+                          ? "section tangent: orbits go on, cut elsewhere (tchat simulate --without-sections)"
+                          : "grazing",
+                      segment_ + 1, event, system_.system().function_name(FunctionKind::event, event),
+                      state_text(system_.system(), point.orbit, point.orbit.end(segment_)))};
+}
+
+}  // namespace tchat

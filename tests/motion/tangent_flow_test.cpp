@@ -1,0 +1,94 @@
+// Tangent vectors along a trajectory: the matrix exponential, closed forms, CVODES' sensitivities.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "lyapunov_problems.hpp"
+#include "motion/cvodes_flow.hpp"
+#include "motion/tangent_flow.hpp"
+
+using namespace tchat;
+using namespace tchat::test;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// x1' = 1 (time), x2' = cos(x1) x2: d x2(t) / d x2(0) = exp(sin t).
+struct Breathing {
+  static constexpr int dimension = 2, parameters = 0, fields = 1, events = 1, jumps = 1;
+  template <class T>
+  void field(int, const T* x, const T*, T* f) const {
+    using std::cos;
+    f[0] = T(1.0), f[1] = cos(x[0]) * x[1];
+  }
+  template <class T>
+  T event(int, const T* x, const T*) const {
+    return x[1];
+  }
+  template <class T>
+  void jump(int, const T* x, const T*, T* g) const {
+    g[0] = x[0], g[1] = x[1];
+  }
+};
+
+}  // namespace
+
+TEST_CASE("tangent flow: growth along a trajectory in closed form, whatever the step") {
+  const HybridSystem& system = system_of<Breathing>();
+  const ParameterVector par = parameters({});
+  VectorXd x(2);
+  const DenseOutput state = [&](double t) {
+    x << t, 0.0;
+    return x.data();
+  };
+  for (const double end : {0.01, 0.3, 2.0, 30.0}) {
+    CAPTURE(end);
+    TangentFlow flow(system, par);
+    OrthonormalFrame frame(2, 2);
+    REQUIRE(flow.carry(frame, 1, state, 0.0, end));
+    frame.orthonormalise();
+    const VectorXd growth = frame.take_growth();
+    CHECK(std::abs(growth.sum() - std::sin(end)) < 1e-9 * (1.0 + end));  // trace: cos t
+  }
+  TangentFlow flow(system, par);
+  OrthonormalFrame frame(2, 1);
+  frame.vectors() << 0.0, 1.0;
+  REQUIRE(flow.carry(frame, 1, state, 0.0, 1.5));
+  frame.orthonormalise();
+  CHECK(std::abs(frame.take_growth()(0) - std::sin(1.5)) < 1e-9);
+}
+
+TEST_CASE("tangent flow: agrees with the sensitivities of CVODES along the Lorenz attractor") {
+  const HybridSystem& system = system_of<Lorenz>();
+  const ParameterVector par = lorenz_parameters();
+  const VectorXd x0 = Eigen::Vector3d(-3.1, -5.2, 17.0);
+  FlowOptions options;
+  options.relative_tolerance = 1e-13;
+  options.absolute_tolerance = 1e-14;
+  CvodesFlow reference(system, 1, x0, par, options);
+  REQUIRE(reference.advance(0.25) == Progress::end_time);
+
+  options.variational = false;
+  OrthonormalFrame frame(3, 3);
+  frame.vectors().setIdentity();
+  TangentFlow tangent(system, par);
+  CvodesFlow flow(system, 1, x0, par, options);
+  flow.on_piece([&](double from, double to) {
+    // So short a time that columns stay apart: the frame is the flow's Jacobian as long as nothing is made orthonormal.
+    tangent.restart();
+    return tangent.carry(frame, 1, flow.dense_output(), from, to);
+  });
+  REQUIRE(flow.advance(0.25) == Progress::end_time);
+  const MatrixXd phi = reference.jacobian();
+  CHECK((frame.vectors() - phi).norm() < 1e-9 * phi.norm());
+}
+
+TEST_CASE("tangent flow: says where a derivative is not finite") {
+  const HybridSystem& system = system_of<Breathing>();
+  const ParameterVector par = parameters({});
+  VectorXd x = VectorXd::Constant(2, NAN);
+  TangentFlow flow(system, par);
+  OrthonormalFrame frame(2, 2);
+  CHECK_FALSE(flow.carry(
+      frame, 1, [&](double) { return x.data(); }, 0.0, 1.0));
+}
