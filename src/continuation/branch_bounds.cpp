@@ -8,7 +8,7 @@
 
 #include "continuation/solution_measure.hpp"
 #include "orbit/condensed_system.hpp"
-#include "orbit/orbit_accuracy.hpp"
+#include "orbit/orbit.hpp"
 
 namespace tchat {
 

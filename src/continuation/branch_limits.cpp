@@ -8,7 +8,7 @@
 #include "continuation/newton_chord.hpp"
 #include "linear/dense_matrix.hpp"
 #include "linear/stack_array.hpp"
-#include "orbit/no_duration.hpp"
+#include "orbit/orbit.hpp"
 #include "stability/label_evidence.hpp"
 
 namespace tchat {

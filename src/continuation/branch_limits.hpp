@@ -10,7 +10,7 @@ namespace tchat {
 class DefiningSystem;
 
 /// Which figure of accuracy exceeds `bound` (ERRMAX; 0: none does), with its value, or "". The figures are
-///   - the estimated error of the orbit (orbit/discretisation_error.hpp),
+///   - the estimated error of the orbit (orbit/collocation_rule.hpp),
 ///   - the structural multiplier, or the trivial one's distance from 1, where multipliers are computed,
 ///   - the factor exp(z) by which perturbations grow, or the flow grows or decays, on one mesh interval. Here z is
 ///     h T |Re lambda| with an eigenvalue lambda of f_x, where one of them grows by more than exp(1) on the interval,

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "continuation/branch_limits.hpp"
-#include "orbit/evaluation_failure.hpp"
+#include "orbit/defining_system.hpp"
 #include "orbit/mesh_adaptation.hpp"
-#include "orbit/orbit_accuracy.hpp"
+#include "orbit/orbit.hpp"
 #include "settings/family.hpp"
 #include "stability/bifurcation_tests.hpp"
 

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "linear/dense_matrix.hpp"
-#include "orbit/nearby_equilibrium.hpp"
+#include "orbit/equilibrium_system.hpp"
 #include "stability/bifurcation_tests.hpp"
 
 namespace tchat {

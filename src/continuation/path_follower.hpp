@@ -15,8 +15,8 @@
 #include "continuation/newton_chord.hpp"
 #include "continuation/path_point.hpp"
 #include "continuation/predictor.hpp"
+#include "orbit/collocation_rule.hpp"
 #include "orbit/mesh_adaptation.hpp"
-#include "orbit/weighted_norm.hpp"
 
 namespace tchat {
 

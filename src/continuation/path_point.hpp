@@ -2,8 +2,8 @@
 #pragma once
 
 #include "continuation/path_trail.hpp"
+#include "orbit/defining_system.hpp"
 #include "orbit/orbit.hpp"
-#include "orbit/orbit_condition.hpp"
 
 namespace tchat {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "linear/array_kernel.hpp"
-#include "orbit/weighted_norm.hpp"
+#include "orbit/collocation_rule.hpp"
 
 namespace tchat {
 

@@ -28,7 +28,7 @@ struct LabelledSolution {
   Eigen::MatrixXd states;                   ///< (n m) x NTPL, segment 1's states first
   std::vector<double> own_mesh;             ///< where segments have meshes of their own: the points of these meshes in
                                             ///< a row, each from 0 to 1; `tau` is so fine that states on them follow
-                                            ///< from `states` (mesh_in_common.hpp). Else empty
+                                            ///< from `states` (mesh_adaptation.hpp). Else empty
   std::vector<int> free_parameters;         ///< ICP really used, durations included
   std::vector<double> parameter_direction;  ///< d PAR(free_parameters[i]) / ds, ds > 0 on along the branch as
                                             ///< its run went; empty without direction

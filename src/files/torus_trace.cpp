@@ -7,8 +7,7 @@
 
 #include "base/user_error.hpp"
 #include "files/run_file_names.hpp"
-#include "orbit/rotation.hpp"
-#include "orbit/torus_winding.hpp"
+#include "orbit/torus_system.hpp"
 #include "settings/constants_file.hpp"
 #include "settings/settings_type.hpp"
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/user_error.hpp"
-#include "orbit/critical_branch_point.hpp"
+#include "orbit/curve_conditions.hpp"
 #include "orbit/periodic_orbit_system.hpp"
 #include "run/start_selection.hpp"
 #include "settings/problem_type.hpp"

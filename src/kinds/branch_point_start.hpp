@@ -1,4 +1,4 @@
-/// Where curves of branch points of periodic orbits start. Conditions and counts: orbit/critical_branch_point.hpp.
+/// Where curves of branch points of periodic orbits start. Conditions and counts: orbit/curve_conditions.hpp.
 #pragma once
 
 namespace tchat {

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include "base/user_error.hpp"
+#include "orbit/curve_conditions.hpp"
 #include "orbit/defining_system.hpp"
-#include "orbit/event_condition.hpp"
 #include "orbit/event_minima.hpp"
-#include "orbit/no_duration.hpp"
+#include "orbit/orbit.hpp"
 #include "run/start_selection.hpp"
 
 namespace tchat {

@@ -1,4 +1,4 @@
-/// Periodic orbits at which two events come at once (orbit/event_condition.hpp): where sliding begins or ends
+/// Periodic orbits at which two events come at once (orbit/curve_conditions.hpp): where sliding begins or ends
 /// (crossing- and switching-sliding), or where an impact meets another surface.
 #pragma once
 

@@ -5,11 +5,9 @@
 
 #include "kinds/families.hpp"
 #include "kinds/problem_types.hpp"
-#include "orbit/equilibrium_fold.hpp"
+#include "orbit/curve_conditions.hpp"
 #include "orbit/equilibrium_system.hpp"
-#include "orbit/event_condition.hpp"
-#include "orbit/hopf_pair.hpp"
-#include "orbit/orbit_accuracy.hpp"
+#include "orbit/orbit.hpp"
 #include "run/branch_switch.hpp"
 #include "run/equilibrium_test_lists.hpp"
 #include "run/hopf_switch.hpp"

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "base/user_error.hpp"
+#include "orbit/monitor_gradient.hpp"
 #include "orbit/periodic_orbit_system.hpp"
-#include "orbit/stationary_monitor.hpp"
 #include "plugin/named_parameters.hpp"
 #include "run/run_monitors.hpp"
 #include "run/start_selection.hpp"

@@ -1,5 +1,5 @@
 /// Extrema of a monitor that is ICP(1), along families of periodic orbits: curves of them, and gradients at labels.
-/// Conditions and counts: orbit/stationary_monitor.hpp.
+/// Conditions and counts: orbit/monitor_gradient.hpp.
 #pragma once
 
 #include <functional>

@@ -1,12 +1,12 @@
 /// The problem types of periodic orbits in grazing contact (IPS = 150), in two parameters: the equations are those of
-/// orbit/grazing_orbit_system.hpp (5.8-5.10).
+/// orbit/periodic_orbit_system.hpp (5.8-5.10).
 #include <algorithm>
 #include <cstdlib>
 
 #include "kinds/families.hpp"
 #include "kinds/problem_types.hpp"
 #include "model/identity_jump.hpp"
-#include "orbit/grazing_orbit_system.hpp"
+#include "orbit/periodic_orbit_system.hpp"
 #include "run/branch_switch.hpp"
 #include "run/problem_row.hpp"
 #include "settings/settings_type.hpp"

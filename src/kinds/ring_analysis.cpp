@@ -11,7 +11,6 @@
 #include "kinds/families.hpp"
 #include "model/identity_jump.hpp"
 #include "orbit/ring_system.hpp"
-#include "orbit/unfolded_system.hpp"
 #include "stability/bifurcation_tests.hpp"
 #include "stability/equilibrium_eigenvalues.hpp"
 

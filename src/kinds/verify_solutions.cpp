@@ -19,7 +19,7 @@
 #include "kinds/critical_label.hpp"
 #include "kinds/orbit_check.hpp"
 #include "orbit/admissibility.hpp"
-#include "orbit/discretisation_error.hpp"
+#include "orbit/collocation_rule.hpp"
 #include "plugin/exit_guard.hpp"
 #include "plugin/named_parameters.hpp"
 #include "plugin/plugin_build.hpp"

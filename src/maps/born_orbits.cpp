@@ -5,7 +5,7 @@
 
 #include "linear/dense_matrix.hpp"
 #include "maps/grazing_verdict.hpp"
-#include "orbit/surface_rate.hpp"
+#include "orbit/ring_system.hpp"
 
 namespace tchat {
 

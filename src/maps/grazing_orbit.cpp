@@ -11,7 +11,7 @@
 #include "linear/dense_matrix.hpp"
 #include "model/event_at.hpp"
 #include "motion/orbit_flow.hpp"
-#include "orbit/surface_rate.hpp"
+#include "orbit/ring_system.hpp"
 
 namespace tchat {
 

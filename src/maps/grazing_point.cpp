@@ -8,7 +8,7 @@
 #include "linear/dense_matrix.hpp"
 #include "model/event_at.hpp"
 #include "model/mode_dimensions.hpp"
-#include "orbit/surface_rate.hpp"
+#include "orbit/ring_system.hpp"
 
 namespace tchat {
 

@@ -16,7 +16,7 @@
 #include "model/hybrid_system.hpp"
 #include "model/index_vector.hpp"
 #include "model/parameter_vector.hpp"
-#include "orbit/surface_rate.hpp"
+#include "orbit/ring_system.hpp"
 
 namespace tchat {
 

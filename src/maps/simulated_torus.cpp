@@ -9,7 +9,7 @@
 
 #include "base/user_error.hpp"
 #include "motion/segment_flow.hpp"
-#include "orbit/torus_winding.hpp"
+#include "orbit/torus_system.hpp"
 
 namespace tchat {
 

@@ -22,7 +22,7 @@ struct PassedSegment {
 Eigen::MatrixXd points_of_returns(const std::vector<PassedSegment>& motion, const Signature& one_return,
                                   const std::string& source);
 
-/// Points whose angles (orbit/torus_winding.hpp) are counted modulo 2 pi, and which of these go round: n x K.
+/// Points whose angles (orbit/torus_system.hpp) are counted modulo 2 pi, and which of these go round: n x K.
 struct PointsWithAngles {
   Eigen::MatrixXd points;
   std::vector<Eigen::Index> winding;  ///< states, from 0; the other angles go to and fro

@@ -52,7 +52,7 @@ class ParameterLayout {
   constexpr int first_monitor(int segments) const {
     return duration(std::max(max_torus_segments, segments)) + (has_room_for_rotation() ? 0 : 1);
   }
-  /// The parameter that unfolds equations (orbit/unfolded_system.hpp), behind the monitors.
+  /// The parameter that unfolds equations (orbit/ring_system.hpp), behind the monitors.
   constexpr int unfolding(int segments) const { return first_monitor(segments) + max_monitors; }
 
   /// How many entries PAR of an orbit has: no fewer than problems may rely on (TCHAT_PAR_LENGTH).

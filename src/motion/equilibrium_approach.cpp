@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "linear/dense_matrix.hpp"
-#include "orbit/nearby_equilibrium.hpp"
+#include "orbit/equilibrium_system.hpp"
 
 namespace tchat {
 

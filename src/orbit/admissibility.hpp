@@ -1,22 +1,51 @@
-/// Is a solution of the boundary value problem an orbit of the model? (Fig. 5.10)
-///
-/// Checked with the accuracy of orbits (orbit_accuracy.hpp), of the period, of the size of h and of |h_x| |f|: T_s >=
-/// 0; h >= 0 at the stored points of every event function monitored on a segment; h_x f <= 0 at every terminal point;
-/// and what sliding asks for at the starts of segments (sliding_violations.hpp).
-/// Between stored points h is looked at where it has a minimum (event_minima.hpp); it counts there beyond 1e-6 of its
-/// size and twice what the error of the states makes of it. Pinned ends are left out.
+/// Which solutions are orbits of the model: event functions keep their signs inside segments, ends are transversal, and
+/// sliding starts where it may.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include "model/hybrid_system.hpp"
 #include "orbit/collocation_rule.hpp"
+#include "orbit/defining_system.hpp"
 #include "orbit/event_minima.hpp"
 #include "orbit/orbit.hpp"
-#include "orbit/transversality.hpp"
 
 namespace tchat {
+
+// How an orbit meets the section that ends a segment: h_x f there, negative where the event function falls through
+// zero.
+
+/// |h_x f| / (|h_x| |f|) up to this is zero: grazing, or a section that the orbit touches. The sign of less says
+/// nothing, nor does what has been divided by it.
+inline constexpr double no_transversality = orbit_accuracy;
+/// At a contact that was located as a zero of h, which is quadratic there, h_x f is known to the root of that (EPSS):
+/// up to this share of |h_x| |f| the contact is tangent, more is a crossing.
+inline constexpr double tangent_contact = 1e-5;
+
+struct Crossing {
+  double rate = 0.0;   ///< h_x f, the velocity of an impact when h is a distance
+  double sizes = 0.0;  ///< |h_x| |f|
+
+  /// h_x f / (|h_x| |f|), from -1 to 1; 0 when h_x or f vanishes.
+  double transversality() const { return sizes > 0.0 ? rate / sizes : 0.0; }
+  bool touches() const { return !(std::abs(transversality()) > no_transversality); }
+};
+
+/// At the end of segment s (from 0), with the gradient of the section there. Where no event ends it, nothing is
+/// touched: the flow crosses at a right angle.
+Crossing crossing_at_end(const DefiningSystem& system, const Orbit& x, int s);
+/// Of an event's own surface.
+Crossing crossing_of_event(const HybridSystem& system, int event, int field, const double* x, const double* par);
+
+// Is a solution of the boundary value problem an orbit of the model? (Fig. 5.10)
+//
+// Checked with the accuracy of orbits (orbit.hpp), of the period, of the size of h and of |h_x| |f|: T_s >=
+// 0; h >= 0 at the stored points of every event function monitored on a segment; h_x f <= 0 at every terminal point;
+// and what sliding asks for at the starts of segments (add_sliding_violations()).
+// Between stored points h is looked at where it has a minimum (event_minima.hpp); it counts there beyond 1e-6 of its
+// size and twice what the error of the states makes of it. Pinned ends are left out.
 
 struct Violation {
   enum Kind {
@@ -36,7 +65,7 @@ struct Violation {
 
 /// `monitored[s]` lists the event functions monitored on segment s, whose courses are `courses` (event_courses).
 /// `error` is the estimated relative error of the
-/// states between mesh points (discretisation_error.hpp). A segment leaves its terminal surface when h_x f is more than
+/// states between mesh points (collocation_rule.hpp). A segment leaves its terminal surface when h_x f is more than
 /// `leaving` of |h_x| |f|: at a located special point, where two segments may meet their surfaces tangentially at once,
 /// that is known to the accuracy of the location.
 std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signature& signature,
@@ -49,5 +78,13 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
 
 /// "segment 1: h1 (wall) = -0.02 at tau = 0.31"
 std::string describe(const Violation& violation, const HybridSystem& system);
+
+// What a segment that slides, or one that crosses a surface on which orbits may slide, must do at its start.
+
+/// Violations at the start of segment s (from 0): it slides off the surface, or where a side's field leads away (unless
+/// the event function that says so is among `monitored`, which is looked at elsewhere); or it goes on to the other side
+/// where that side's field leads back, so that the orbit slides. `leaving`: as in inadmissibilities().
+void add_sliding_violations(std::vector<Violation>& violations, const HybridSystem& system, const Signature& signature,
+                            const std::vector<int>& monitored, const Orbit& x, int s, double leaving);
 
 }  // namespace tchat

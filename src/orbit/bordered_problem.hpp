@@ -28,7 +28,7 @@
 #include <vector>
 
 #include "orbit/condensed_system.hpp"
-#include "orbit/orbit_condition.hpp"
+#include "orbit/defining_system.hpp"
 
 namespace tchat {
 

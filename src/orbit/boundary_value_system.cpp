@@ -4,9 +4,8 @@
 
 #include <algorithm>
 
-#include "orbit/coupling.hpp"
-#include "orbit/evaluation_failure.hpp"
-#include "orbit/gauss_points.hpp"
+#include "orbit/collocation_rule.hpp"
+#include "orbit/defining_system.hpp"
 
 namespace tchat {
 

@@ -1,10 +1,12 @@
 #include "orbit/collocation_rule.hpp"
 
 #include <Eigen/LU>
-#include <algorithm>
 #include <boost/math/special_functions/legendre.hpp>
 #include <cmath>
+#include <limits>
 #include <utility>
+
+#include "linear/stack_array.hpp"
 
 namespace tchat {
 
@@ -140,6 +142,81 @@ void CollocationRule::basis(double sigma, double* values, double* slopes) const 
     if (values != nullptr) values[i] = product;
     slopes[i] = sum;
   }
+}
+
+WeightedNorm::WeightedNorm(Eigen::VectorXd state_weights, ParameterVector parameter_weights)
+    : state_weights_(std::move(state_weights)), parameter_weights_(std::move(parameter_weights)) {}
+
+WeightedNorm WeightedNorm::unit(const OrbitShape& shape) {
+  ParameterVector parameters(ParameterLayout(), shape.segments);
+  parameters.setOnes();
+  return {Eigen::VectorXd::Ones(shape.dimension), std::move(parameters)};
+}
+
+MassIntervals mass_intervals(const Orbit& x, const CollocationRule& rule, const Eigen::VectorXd& weights, int s) {
+  return {x.mesh_of(s),   x.shape.intervals_of(s), rule.mass.data(), x.shape.collocation + 1,
+          weights.data(), x.shape.dimension};
+}
+
+double WeightedNorm::dual(const Orbit& x, const CollocationRule& rule, const std::vector<int>& free_parameters,
+                          const OrbitVector& v, OrbitVector& row) const {
+  GrowingDot product(row.states.data(), v.states.data());
+  for (int s = 0; s < x.shape.segments; ++s) {
+    const MassIntervals mass = mass_intervals(x, rule, state_weights_, s);
+    const int first = x.shape.first_node(s);
+    row.states.middleCols(first, x.shape.nodes_of(s)).setZero();  // not all at once, to find it in the cache
+    array_functions().add_mass(mass, v.states.col(first).data(), row.states.col(first).data());
+    product.grow_to(long{first + x.shape.nodes_of(s)} * x.shape.dimension);
+    row.durations(s) = parameter_weights_.duration(s) * v.durations(s);
+  }
+  for (std::size_t g = 0; g < free_parameters.size(); ++g) {
+    const auto i = static_cast<Eigen::Index>(g);
+    row.globals(i) = parameter_weights_(free_parameters[g] - 1) * v.globals(i);
+  }
+  return product.value(row.states.size()) + row.durations.dot(v.durations) + row.globals.dot(v.globals);
+}
+
+namespace {
+
+/// The largest component of the residual at the ends of the intervals of segment s.
+double largest_residual(const HybridSystem& system, int field, const Orbit& x, const CollocationRule& rule, int s) {
+  const int n = x.shape.dimension;
+  const int c = x.shape.collocation;
+  constexpr std::size_t usual_entries = 2048;
+  const int intervals = x.shape.intervals_of(s);
+  const double* const mesh = x.mesh_of(s);
+  StackMatrix<usual_entries> slopes(n, 2 * static_cast<Eigen::Index>(intervals));
+  array_functions().interpolate({rule.end_slope.data(), 2, c, n, intervals}, x.node(s, 0), slopes.data(), n);
+  StackVector f(n);
+  double largest = 0.0;
+  for (int j = 0; j <= intervals; ++j) {
+    system.value(FunctionKind::field, field, x.node(s, j * c), x.par.data(), f.data());
+    if (!std::all_of(f.begin(), f.end(), [](double value) { return std::isfinite(value); })) continue;
+    // The end of one interval is the start of the next one.
+    for (const int side : {0, 1}) {
+      const int interval = j - side;
+      if (interval < 0 || interval >= intervals) continue;
+      const double time = (mesh[interval + 1] - mesh[interval]) * x.duration(s);
+      const double* slope = slopes.col(2 * interval + side).data();
+      for (int a = 0; a < n; ++a) largest = std::max(largest, std::abs(slope[a] - time * f(a)));
+    }
+  }
+  return largest;
+}
+
+}  // namespace
+
+double estimated_error(const HybridSystem& system, const Signature& signature, const Orbit& x,
+                       const CollocationRule& rule) {
+  ArrayRange of_states{0.0, true};
+  double residual = 0.0;
+  for (int s = 0; s < x.shape.segments; ++s) {
+    widen(of_states, array_functions().range(x.node(s, 0), long{x.shape.nodes_of(s)} * x.shape.dimension));
+    if (!of_states.finite) return std::numeric_limits<double>::infinity();
+    const int field = signature[static_cast<std::size_t>(s)].field;
+    if (x.duration(s) != 0.0) residual = std::max(residual, largest_residual(system, field, x, rule, s));
+  }
+  return rule.residual_integral * residual / (1.0 + of_states.largest);
 }
 
 }  // namespace tchat

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "linear/frontal_lu.hpp"
-#include "orbit/with_dimension.hpp"
+#include "orbit/collocation_rule.hpp"
 
 namespace tchat {
 

@@ -25,7 +25,6 @@
 #include "linear/block_array.hpp"
 #include "linear/sparse_lu.hpp"
 #include "orbit/collocation_rule.hpp"
-#include "orbit/coupling.hpp"
 #include "orbit/defining_system.hpp"
 #include "orbit/orbit.hpp"
 #include "orbit/segment_elimination.hpp"

@@ -1,14 +1,9 @@
-/// What a problem type adds to collocation: the conditions that tie the segments of an orbit together.
-///
-/// Every problem type continues orbits of a signature I_1..I_m: on each segment the collocated field (5.29), rows that
-/// couple the ends of segments, and integral conditions over the whole orbit. A problem type says which these are, and
-/// which problem parameters are free. Those of a ring of segments are in ring_system.hpp.
-///
-/// Count. Unknowns: n m functions, m durations, q free problem parameters. Conditions: R coupling rows, I integral
-/// conditions and b further border conditions (pseudo-arclength and that of a two-parameter curve). Well posed when
-/// n m + m + q = R + I + b.
+/// The equations besides collocation: what a problem type adds, the rows that couple segments, the conditions of
+/// curves, and what failed if one of them could not be evaluated.
 #pragma once
 
+#include <Eigen/Core>
+#include <complex>
 #include <memory>
 #include <optional>
 #include <span>
@@ -20,6 +15,16 @@
 #include "orbit/orbit.hpp"
 
 namespace tchat {
+
+// What a problem type adds to collocation: the conditions that tie the segments of an orbit together.
+//
+// Every problem type continues orbits of a signature I_1..I_m: on each segment the collocated field (5.29), rows that
+// couple the ends of segments, and integral conditions over the whole orbit. A problem type says which these are, and
+// which problem parameters are free. Those of a ring of segments are in ring_system.hpp.
+//
+// Count. Unknowns: n m functions, m durations, q free problem parameters. Conditions: R coupling rows, I integral
+// conditions and b further border conditions (pseudo-arclength and that of a two-parameter curve). Well posed when
+// n m + m + q = R + I + b.
 
 class BranchAnalysis;
 class CouplingPattern;
@@ -118,5 +123,105 @@ class DefiningSystem {
   std::vector<int> free_parameters_;
   std::vector<bool> contact_segments_;
 };
+
+// The rows that tie the ends of segments together, as a problem type gives them to the condensed system.
+
+/// The unknowns that are left when each segment is condensed: x_s(0), x_s(1), T_s of one segment after the other, then
+/// the free problem parameters.
+struct EndUnknowns {
+  int dimension;
+  int segments;
+
+  int start(int s) const { return s * (2 * dimension + 1); }
+  int end(int s) const { return start(s) + dimension; }
+  int duration(int s) const { return start(s) + 2 * dimension; }
+  int global(int g) const { return segments * (2 * dimension + 1) + g; }
+};
+
+/// Collects where the derivatives of rows stand. Their values are given later in the order of these calls, row by row
+/// within each of them. `row` counts from `first_row`.
+class CouplingPattern {
+ public:
+  CouplingPattern(const EndUnknowns& unknowns, int globals, int first_row, std::vector<int>& rows,
+                  std::vector<int>& columns)
+      : unknowns_(unknowns), globals_(globals), first_row_(first_row), rows_(rows), columns_(columns) {}
+
+  /// `count` rows in all of x_s(0), of x_s(1), in T_s, in the free problem parameters, in one of them.
+  void start(int row, int count, int s) { dense(row, count, unknowns_.start(s), unknowns_.dimension); }
+  void end(int row, int count, int s) { dense(row, count, unknowns_.end(s), unknowns_.dimension); }
+  void duration(int row, int count, int s) { dense(row, count, unknowns_.duration(s), 1); }
+  void globals(int row, int count) { dense(row, count, unknowns_.global(0), globals_); }
+  void global(int row, int count, int g) { dense(row, count, unknowns_.global(g), 1); }
+  /// n rows, each in its own component of x_s(0).
+  void start_components(int row, int s) {
+    for (int a = 0; a < unknowns_.dimension; ++a) put(row + a, unknowns_.start(s) + a);
+  }
+
+ private:
+  void dense(int row, int count, int column, int columns) {
+    for (int a = 0; a < count; ++a)
+      for (int b = 0; b < columns; ++b) put(row + a, column + b);
+  }
+  void put(int row, int column) {
+    rows_.push_back(first_row_ + row);
+    columns_.push_back(column);
+  }
+
+  EndUnknowns unknowns_;
+  int globals_;
+  int first_row_;
+  std::vector<int>& rows_;
+  std::vector<int>& columns_;
+};
+
+// Which function of the problem could not be evaluated on an orbit, for messages.
+
+/// The first field, event function or jump whose value or derivatives are not finite at a point where the boundary
+/// value problem evaluates it, with its index, place and state; empty when there is none.
+std::string evaluation_failure(const DefiningSystem& system, const CollocationRule& rule, const Orbit& x);
+
+/// The same for one function at one state, tau on segment s (from 0).
+std::string function_failure(const DefiningSystem& system, FunctionKind kind, int index, int s, double tau,
+                             const double* x, const double* par);
+
+// What a curve in two parameters adds to the equations of one solution.
+
+class CondensedSystem;
+
+/// The vectors of a multiplier at the ends of segments, of any length: S(mu) right = 0, left S(mu) = 0
+/// (return_map.hpp).
+struct CriticalVectors {
+  std::complex<double> multiplier;
+  Eigen::VectorXcd right, left;
+};
+
+/// A function G of the orbit, durations and free parameters, of a few numbers, with its gradients.
+class OrbitCondition {
+ public:
+  static constexpr int most = 5;
+
+  virtual ~OrbitCondition() = default;
+  /// How many numbers; constant.
+  virtual int count() const { return 1; }
+  /// G and its gradients at x, whose linearisation is in `condensed`. False when they cannot be found.
+  virtual bool evaluate(CondensedSystem& condensed, const Orbit& x) = 0;
+  /// Of number k = 0 .. count() - 1.
+  virtual double value(int k) const = 0;
+  virtual const OrbitVector& gradient(int k) const = 0;
+  /// The multiplier that is kept exactly, where it is one number: 1 or -1.
+  virtual std::optional<int> kept_multiplier() const { return std::nullopt; }
+  /// The vectors of the multiplier that is kept on the unit circle, in the closed upper half plane, at the point of the
+  /// last evaluation. False where there is no such multiplier.
+  virtual bool put_critical_vectors(CriticalVectors& /*vectors*/) const { return false; }
+  /// "" on the curve, or why the last point, which solves the equations, lies beyond its end.
+  virtual std::string beyond_end() const { return {}; }
+
+  /// What evaluations near the point of the last one begin from; `memory` is overwritten, empty before the first one.
+  virtual void remember(std::vector<double>& memory) const = 0;
+  virtual void recall(const std::vector<double>& memory) = 0;
+};
+
+/// What linearisations near a point of the branch begin from; empty without a condition.
+using ConditionMemory = std::vector<double>;
 
 }  // namespace tchat

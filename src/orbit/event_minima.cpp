@@ -9,8 +9,8 @@
 #include "linear/array_kernel.hpp"
 #include "linear/stack_array.hpp"
 #include "model/event_at.hpp"
-#include "orbit/orbit_accuracy.hpp"
-#include "orbit/with_dimension.hpp"
+#include "orbit/collocation_rule.hpp"
+#include "orbit/orbit.hpp"
 
 namespace tchat {
 

@@ -30,7 +30,7 @@ struct EventMinimum {
 /// Is the start of segment s (from 0) pinned for an event function: does the jump before it land on the surface h = 0
 /// by structure (h = 0 there, gradient of h o g parallel to that of the previous terminal event)?
 bool is_pinned_start(const HybridSystem& system, const Signature& signature, const Orbit& x, int s, int event);
-/// The same where the scale of the event function (orbit_accuracy.hpp) is known.
+/// The same where the scale of the event function (orbit.hpp) is known.
 bool is_pinned_start(const HybridSystem& system, const Signature& signature, const Orbit& x, int s, int event,
                      double scale);
 
@@ -49,7 +49,7 @@ struct EventCourse {
   std::vector<EventDip> dips;         ///< inside the segment, in order; none where it lasts no positive time
   bool first_hangs_on_start = false;  ///< h rises nowhere before the first dip
   bool last_hangs_on_end = false;     ///< h falls nowhere after the last one
-  /// event_scale() of the orbit (orbit_accuracy.hpp), which takes a look at all segments; nothing where nobody has.
+  /// event_scale() of the orbit (orbit.hpp), which takes a look at all segments; nothing where nobody has.
   std::optional<double> scale = {};
 };
 

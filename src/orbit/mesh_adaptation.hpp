@@ -1,18 +1,23 @@
-/// Meshes that follow the solution: equidistribution of the estimated local error, and transfer between meshes.
-///
-/// The (c+1)-th derivative of the exact solution is estimated by differencing the c-th derivatives of the polynomials
-/// of neighbouring intervals. The monitor is the sum over components and segments of |u^(c+1)|^(1/(c+1)) where one mesh
-/// in tau serves all segments; where each has its own mesh it is that segment's sum, and the integrals of
-/// |u^(c+1) / size of u|^(1/(c+1)) over the segments decide how many of the m N intervals each of them gets. Segments
-/// of zero duration have no weight, nor have components whose estimates are rounding.
+/// Meshes: adaptation to a solution, transfer between meshes, and one mesh for all segments of an orbit, as files store
+/// it.
 #pragma once
 
+#include <Eigen/Core>
 #include <span>
+#include <vector>
 
 #include "orbit/collocation_rule.hpp"
 #include "orbit/orbit.hpp"
 
 namespace tchat {
+
+// Meshes that follow the solution: equidistribution of the estimated local error, and transfer between meshes.
+//
+// The (c+1)-th derivative of the exact solution is estimated by differencing the c-th derivatives of the polynomials
+// of neighbouring intervals. The monitor is the sum over components and segments of |u^(c+1)|^(1/(c+1)) where one mesh
+// in tau serves all segments; where each has its own mesh it is that segment's sum, and the integrals of
+// |u^(c+1) / size of u|^(1/(c+1)) over the segments decide how many of the m N intervals each of them gets. Segments
+// of zero duration have no weight, nor have components whose estimates are rounding.
 
 /// A segment with a mesh of its own has so many intervals at least, where N is not smaller: what four lanes do at once.
 inline constexpr int least_own_intervals = 4;
@@ -105,7 +110,28 @@ Eigen::MatrixXd interpolate_states(const Eigen::MatrixXd& states, const OrbitSha
 
 /// Estimated largest error of polynomials that agree with a smooth function at the nodes, relative to 1 + max |u|:
 /// h^(c+1) |u^(c+1)| times the interpolation constant, the largest over intervals and components. That of a solution
-/// of the equations is in discretisation_error.hpp.
+/// of the equations is in collocation_rule.hpp.
 double estimated_interpolation_error(const Orbit& x, const CollocationRule& rule);
+
+// Orbits whose segments have meshes of their own, on a mesh that all segments have in common, as files store them; and
+// back.
+//
+// The mesh in common is so fine that each interval of each segment has c + 1 of its nodes at least. So the polynomial
+// on that interval passes through these, and is found again from them to rounding. Between its nodes the orbit in
+// common has the error of interpolation on finer intervals, of order c + 1.
+
+/// An orbit with a mesh in common as one whose segments have this mesh each.
+Orbit with_own_meshes(Orbit x);
+
+/// Do all segments have the same mesh?
+bool have_one_mesh(const OrbitShape& shape, const std::vector<double>& mesh);
+
+/// A mesh in common for orbits on own meshes: that which all have, or a finer one.
+std::vector<double> mesh_in_common(const OrbitShape& own, const std::vector<double>& own_mesh);
+
+/// The other way: states (n x columns) on own meshes from those on a mesh in common.
+Eigen::MatrixXd states_on_own_meshes(const Eigen::MatrixXd& states, const OrbitShape& common,
+                                     const std::vector<double>& common_mesh, const OrbitShape& own,
+                                     const std::vector<double>& own_mesh);
 
 }  // namespace tchat

@@ -11,7 +11,7 @@
 #include "base/number.hpp"
 #include "base/user_error.hpp"
 #include "base/words.hpp"
-#include "orbit/gauss_points.hpp"
+#include "orbit/collocation_rule.hpp"
 
 namespace tchat {
 

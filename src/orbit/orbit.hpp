@@ -1,21 +1,26 @@
-/// An orbit of m segments on its mesh, and vectors of the space that orbits live in.
-///
-/// Each segment s = 0..m-1 is scaled to tau in [0, 1] with its own duration T_s (5.1-5.7) and is represented on N_s
-/// mesh intervals by polynomials of degree c (NCOL) through c + 1 equally spaced nodes (5.26-5.27). Neighbouring
-/// intervals share their mesh node, so a segment has N_s c + 1 nodes. Either all segments have one mesh of N intervals
-/// in common, or each has a mesh of its own; then the N_s sum to m N, so that both kinds of orbits have equally many
-/// nodes.
+/// Orbits of m segments on their mesh and vectors of their space; how accurately an orbit is known, and when a segment
+/// has zero duration.
 #pragma once
 
 #include <Eigen/Core>
 #include <cassert>
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "model/hybrid_system.hpp"
 #include "model/parameter_vector.hpp"
 
 namespace tchat {
+
+// An orbit of m segments on its mesh, and vectors of the space that orbits live in.
+//
+// Each segment s = 0..m-1 is scaled to tau in [0, 1] with its own duration T_s (5.1-5.7) and is represented on N_s
+// mesh intervals by polynomials of degree c (NCOL) through c + 1 equally spaced nodes (5.26-5.27). Neighbouring
+// intervals share their mesh node, so a segment has N_s c + 1 nodes. Either all segments have one mesh of N intervals
+// in common, or each has a mesh of its own; then the N_s sum to m N, so that both kinds of orbits have equally many
+// nodes.
 
 /// The numbers of mesh intervals of segments that have meshes of their own. Copies share one table.
 class OwnIntervals {
@@ -131,5 +136,41 @@ void advance_parameters(Orbit& x, double step, const OrbitVector& v, const std::
 /// The value of the dual vector `row` on x - base.
 double dot_difference(const OrbitVector& row, const Orbit& x, const Orbit& base,
                       const std::vector<int>& free_parameters);
+
+// How well a computed orbit is known: the one level below which a value says nothing.
+
+/// Relative error of a corrected orbit: Newton's method ends with 1e-12 to 1e-10, the discretisation adds its own.
+/// Whatever is computed from the orbit is zero up to this share of the sizes that it is made of.
+inline constexpr double orbit_accuracy = 1e-9;
+
+/// The size of an event function, against which a value of it is small: the largest |h| at the mesh points of the whole
+/// orbit, for on a segment that is about to vanish all of them are small. Of an equilibrium, whose h may be all there
+/// is and small, what a change of the state by its own size makes of h.
+double event_scale(const HybridSystem& system, const Orbit& x, int event);
+
+/// How well states of the orbit are known, n entries: orbit_accuracy times the largest |x_k| over the orbit, and not
+/// less than rounding of the largest of all states, for a state that is zero throughout shows nothing but rounding.
+Eigen::VectorXd state_uncertainty(const Orbit& x);
+
+// When a segment lasts no time.
+
+/// Durations that are a smaller share of the period are zero: located points, where segments vanish, are known to about
+/// ten times less (EPSS).
+inline constexpr double no_duration = 1e-6;
+
+/// Does segment s (from 0) last no time, but for the accuracy of a located point?
+inline bool lasts_no_time(const Orbit& x, int s, double period) {
+  return std::abs(x.duration(s)) <= no_duration * std::abs(period);
+}
+/// The same where the period is not at hand, which is a sum over all segments.
+inline bool lasts_no_time(const Orbit& x, int s) { return lasts_no_time(x, s, x.period()); }
+
+/// A contact segment (model/contact_segment.hpp) that shrinks to nothing passes zero in proportion to the arclength,
+/// so that a located point knows its duration to EPSS, which may be coarse. At a tangency a shorter one is zero.
+inline constexpr double no_contact = 1e-4;
+
+inline bool contact_lasts_no_time(const Orbit& x, int s) {
+  return std::abs(x.duration(s)) <= no_contact * std::abs(x.period());
+}
 
 }  // namespace tchat

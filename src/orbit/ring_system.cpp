@@ -5,10 +5,86 @@
 #include <algorithm>
 #include <cmath>
 
-#include "orbit/coupling.hpp"
-#include "orbit/evaluation_failure.hpp"
+#include "model/mode_dimensions.hpp"
 
 namespace tchat {
+
+SurfaceRate::SurfaceRate(int dimension, int free_count)
+    : hx(dimension),
+      hp(free_count),
+      rate_x(dimension),
+      rate_p(free_count),
+      f_(dimension),
+      direction_(Eigen::VectorXd::Zero(dimension + free_count)),
+      fx_(dimension, dimension),
+      fp_(dimension, free_count) {}
+
+void SurfaceRate::evaluate(const HybridSystem& system, const IndexVector& v, const double* x, const double* par,
+                           const std::vector<int>& free_parameters) {
+  system.first(FunctionKind::field, v.field, x, par, free_parameters, f_.data(), fx_.data(), fp_.data());
+  system.first(FunctionKind::event, v.event, x, par, free_parameters, &h, hx.data(), hp.data());
+  // d (h_x f) = h_xx f + h_x f_x: the first part is the second derivative in the direction (f, 0).
+  direction_.head(f_.size()) = f_;
+  system.second(FunctionKind::event, v.event, x, par, free_parameters, direction_.data(), &rate, rate_x.data(),
+                rate_p.data());
+  for (Eigen::Index b = 0; b < hx.size(); ++b) rate_x(b) += fx_.col(b).dot(hx);
+  for (Eigen::Index k = 0; k < hp.size(); ++k) rate_p(k) += fp_.col(k).dot(hx);
+  clear_absent(system, v.field, hx);
+  clear_absent(system, v.field, rate_x);
+}
+
+namespace {
+
+/// Of the period. A shorter contact takes the mean of h_x f as that of both ends, wrong by T^2 / 12 times its second
+/// derivative; in a longer one rounding of h is divided by T. Both are some 1e-10 of h_x f here.
+constexpr double short_contact = 3e-6;
+
+bool is_short(const Orbit& x, int s) { return std::abs(x.duration(s)) <= short_contact * std::abs(x.period()); }
+
+}  // namespace
+
+ContactRow::ContactRow(int dimension, int free_count) : start_(dimension, free_count), end_(dimension, free_count) {}
+
+double ContactRow::value(const HybridSystem& system, const IndexVector& v, const Orbit& x, int s,
+                         const std::vector<int>& free_parameters) {
+  const double* par = x.par.data();
+  if (!is_short(x, s))
+    return (system.event(v.event, x.end(s), par) - system.event(v.event, x.start(s), par)) / x.duration(s);
+  start_.evaluate(system, v, x.start(s), par, free_parameters);
+  end_.evaluate(system, v, x.end(s), par, free_parameters);
+  return 0.5 * (start_.rate + end_.rate);
+}
+
+double* ContactRow::derivatives(const HybridSystem& system, const IndexVector& v, const Orbit& x, int s,
+                                const std::vector<int>& free_parameters, double& value, double* entries) {
+  const double* par = x.par.data();
+  const auto put = [&entries](double first, const Eigen::VectorXd& a, double second, const Eigen::VectorXd& b) {
+    for (Eigen::Index k = 0; k < a.size(); ++k) *entries++ = first * a(k) + second * b(k);
+  };
+  const auto put_one = [&](double factor, const Eigen::VectorXd& a) { put(factor, a, 0.0, a); };
+  if (is_short(x, s)) {
+    start_.evaluate(system, v, x.start(s), par, free_parameters);
+    end_.evaluate(system, v, x.end(s), par, free_parameters);
+    value = 0.5 * (start_.rate + end_.rate);
+    put_one(0.5, start_.rate_x);
+    put_one(0.5, end_.rate_x);
+    *entries++ = 0.0;
+    put(0.5, start_.rate_p, 0.5, end_.rate_p);
+    return entries;
+  }
+  const auto evaluate = [&](SurfaceRate& at, const double* state) {
+    system.first(FunctionKind::event, v.event, state, par, free_parameters, &at.h, at.hx.data(), at.hp.data());
+  };
+  evaluate(start_, x.start(s));
+  evaluate(end_, x.end(s));
+  const double inverse = 1.0 / x.duration(s);
+  value = (end_.h - start_.h) * inverse;
+  put_one(-inverse, start_.hx);
+  put_one(inverse, end_.hx);
+  *entries++ = -value * inverse;
+  put(-inverse, start_.hp, inverse, end_.hp);
+  return entries;
+}
 
 RingSystem::RingSystem(const HybridSystem& system, Signature signature, std::vector<int> free_parameters)
     : DefiningSystem(system, std::move(signature), std::move(free_parameters)),
@@ -125,6 +201,37 @@ std::string RingSystem::coupling_failure(int s, const Orbit& x) const {
   const std::string event =
       has_event(s) ? function_failure(*this, FunctionKind::event, v.event, s, 1.0, x.end(s), par) : "";
   return !event.empty() ? event : function_failure(*this, FunctionKind::jump, v.jump, s, 1.0, x.end(s), par);
+}
+
+UnfoldedSystem::UnfoldedSystem(std::unique_ptr<DefiningSystem> ring)
+    : DefiningSystem(ring->system(), ring->signature(), ring->free_parameters()), ring_(std::move(ring)) {
+  std::ptrdiff_t rows = 0;
+  for (int s = 0; s < segments(); ++s) {
+    first_rows_.push_back(rows);
+    rows += ring_->coupling_rows(s);
+  }
+  direction_.assign(static_cast<std::size_t>(rows), 0.0);
+}
+
+void UnfoldedSystem::coupling_pattern(int s, CouplingPattern& pattern) const {
+  ring_->coupling_pattern(s, pattern);
+  pattern.global(0, coupling_rows(s), free_count() - 1);
+}
+
+void UnfoldedSystem::add(int s, const Orbit& x, double* values) const {
+  const double b = x.par(layout().unfolding(segments()) - 1);
+  for (int r = 0; r < coupling_rows(s); ++r) values[r] += b * direction_of(s)[r];
+}
+
+void UnfoldedSystem::coupling_values(int s, const Orbit& x, double* values) const {
+  ring_->coupling_values(s, x, values);
+  add(s, x, values);
+}
+
+double* UnfoldedSystem::coupling_derivatives(int s, const Orbit& x, double* values, double* entries) const {
+  entries = ring_->coupling_derivatives(s, x, values, entries);
+  add(s, x, values);
+  return std::copy_n(direction_of(s), coupling_rows(s), entries);
 }
 
 }  // namespace tchat

@@ -1,31 +1,10 @@
-/// Elimination of all unknowns of a segment but those at its ends, the duration and the free parameters (5.30-5.49),
-/// four mesh intervals at a time in the lanes of vector registers.
-///
-/// Each of the four lanes has a quarter of the segment's intervals, one behind the other: what is done to intervals,
-/// and to the joins of neighbouring ones, is the same in all lanes and touches one another's values nowhere. Then:
-///   1. interval: the c - 1 interior nodes are eliminated from the c n collocation rows; n rows in (left, right)
-///   remain;
-///   2. joins: neighbouring pieces are joined by elimination of the mesh node between them with pivoting, halves of a
-///   quarter from their halves, and at last the quarters, until n rows remain,
-///          A x(0) + C x(1) + B (T, p) + r = 0                                         (5.48-5.49 with C kept)
-///   The residual is one more column: its unknown is 1 for Newton's correction, 0 for null vectors.
-///   The order matters. From left to right the same elimination becomes a product of transfer matrices wherever the
-///   flow grows little per interval: every pivot is then an entry of the longer piece, rounding grows like the flow
-///   over the whole segment, up to 2^(n N), and decaying modes are lost [S. J. Wright, SIAM J. Sci. Comput. 14 (1993)
-///   231]. Pieces of equal length show their growth to the pivot search; rounding grows by 2^n for each of the log2 N
-///   levels at most, by little in practice.
-///
-/// Border rows are eliminated on the way. Work and memory are linear in the number of intervals. All arrays are
-/// allocated when the object is made, except for plans: each number of intervals gets one when a segment first has it.
-///
-/// Several threads: segments have nothing to do with one another, and neither have the groups of a segment, nor joins
-/// of one level. Whoever has a piece writes to its own blocks alone, so that results do not depend on the threads to
-/// the last bit. The problem's functions need not be re-entrant: one thread calls them, and others fill and eliminate
-/// meanwhile with what it has found. As a rule blocks, which are large, stay with the thread that they were filled by,
-/// where they are eliminated, joined and solved: processors may share no cache.
+/// Condensation of one segment: the order in which its intervals are eliminated, the rows of its Newton matrix, and
+/// their elimination. segment_solution.cpp solves with the factors.
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <vector>
@@ -37,9 +16,101 @@
 #include "model/hybrid_system.hpp"
 #include "orbit/collocation_rule.hpp"
 #include "orbit/orbit.hpp"
-#include "orbit/segment_plan.hpp"
 
 namespace tchat {
+
+// Numbers of one lane of arrays whose entries are `lanes` numbers side by side.
+
+/// `count` numbers of one lane from and to an array of their own.
+inline void take_lane(const double* from, int lane, int count, double* to) {
+  for (int k = 0; k < count; ++k) to[k] = from[k * lanes + lane];
+}
+inline void put_lane(const double* from, int count, int lane, double* to) {
+  for (int k = 0; k < count; ++k) to[k * lanes + lane] = from[k];
+}
+
+/// The same number in all lanes.
+inline void put_lanes(double value, double* to) { std::fill_n(to, lanes, value); }
+
+// In which order the intervals of a segment are eliminated, and its pieces joined; by their number alone.
+
+/// Which interval of a segment is where. Lanes have equally many intervals or one less: those have none in the last
+/// group, the last lane always has one.
+class LaneSchedule {
+ public:
+  explicit LaneSchedule(int intervals) : intervals_(intervals) {}
+  int intervals() const { return intervals_; }
+  /// Sets of one interval in each lane.
+  int groups() const { return (intervals_ + lanes - 1) / lanes; }
+  /// The first interval of a lane; that of lane `lanes` is the number of intervals.
+  int start(int lane) const { return static_cast<int>(static_cast<long>(lane) * intervals_ / lanes); }
+  int size(int lane) const { return start(lane + 1) - start(lane); }
+  bool holds(int group, int lane) const { return group < size(lane); }
+  /// The lane whose interval a lane computes with in a group: its own, or where it has none the last one's.
+  int source(int group, int lane) const { return holds(group, lane) ? lane : lanes - 1; }
+  int interval(int group, int lane) const { return start(source(group, lane)) + group; }
+  /// The mesh node of a lane before its interval `group`, or where it has none at its end.
+  int node(int group, int lane) const { return group < size(lane) ? start(lane) + group : start(lane + 1); }
+
+ private:
+  int intervals_;
+};
+
+/// The elimination of what is between pieces first..middle-1 and middle..last-1.
+struct PieceJoin {
+  int first, middle, last;
+  int number = 0;  ///< among all joins in the order in which they are done
+};
+
+struct SegmentPlan {
+  explicit SegmentPlan(int intervals);
+
+  LaneSchedule schedule;
+  int groups;
+  std::vector<PieceJoin> joins;                ///< of groups, each after those that make its two pieces
+  std::vector<int> number_of_middle;           ///< of those joins
+  std::vector<std::vector<PieceJoin>> levels;  ///< the same, those of one level independent of one another
+  std::vector<int> top_lanes;                  ///< that have intervals
+  std::vector<PieceJoin> top_joins;            ///< of top_lanes
+
+  static int halfway(int first, int last) { return first + (last - first) / 2; }
+  const PieceJoin& join_of(int first, int last) const {
+    return joins[static_cast<std::size_t>(number_of_middle[static_cast<std::size_t>(halfway(first, last))])];
+  }
+  /// Does a lane have nothing on the right side of a join?
+  bool passes(const PieceJoin& at, int lane) const { return at.middle >= schedule.size(lane); }
+  /// The mesh node where a piece of a lane begins; of one beyond the last, where the segment ends.
+  int top_node(int piece) const {
+    return piece < static_cast<int>(top_lanes.size()) ? schedule.start(top_lanes[static_cast<std::size_t>(piece)])
+                                                      : schedule.intervals();
+  }
+};
+
+// Elimination of all unknowns of a segment but those at its ends, the duration and the free parameters (5.30-5.49),
+// four mesh intervals at a time in the lanes of vector registers.
+//
+// Each of the four lanes has a quarter of the segment's intervals, one behind the other: what is done to intervals,
+// and to the joins of neighbouring ones, is the same in all lanes and touches one another's values nowhere. Then:
+//   1. interval: the c - 1 interior nodes are eliminated from the c n collocation rows; n rows in (left, right)
+//   remain;
+//   2. joins: neighbouring pieces are joined by elimination of the mesh node between them with pivoting, halves of a
+//   quarter from their halves, and at last the quarters, until n rows remain,
+//          A x(0) + C x(1) + B (T, p) + r = 0                                         (5.48-5.49 with C kept)
+//   The residual is one more column: its unknown is 1 for Newton's correction, 0 for null vectors.
+//   The order matters. From left to right the same elimination becomes a product of transfer matrices wherever the
+//   flow grows little per interval: every pivot is then an entry of the longer piece, rounding grows like the flow
+//   over the whole segment, up to 2^(n N), and decaying modes are lost [S. J. Wright, SIAM J. Sci. Comput. 14 (1993)
+//   231]. Pieces of equal length show their growth to the pivot search; rounding grows by 2^n for each of the log2 N
+//   levels at most, by little in practice.
+//
+// Border rows are eliminated on the way. Work and memory are linear in the number of intervals. All arrays are
+// allocated when the object is made, except for plans: each number of intervals gets one when a segment first has it.
+//
+// Several threads: segments have nothing to do with one another, and neither have the groups of a segment, nor joins
+// of one level. Whoever has a piece writes to its own blocks alone, so that results do not depend on the threads to
+// the last bit. The problem's functions need not be re-entrant: one thread calls them, and others fill and eliminate
+// meanwhile with what it has found. As a rule blocks, which are large, stay with the thread that they were filled by,
+// where they are eliminated, joined and solved: processors may share no cache.
 
 /// Outcome of a linearisation; factors exist only when it is `ready`. `condition_lost`: the condition of a
 /// two-parameter curve cannot be evaluated.

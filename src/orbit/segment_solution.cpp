@@ -4,7 +4,6 @@
 #include <cassert>
 
 #include "linear/fetch_ahead.hpp"
-#include "orbit/lane_entries.hpp"
 #include "orbit/segment_elimination.hpp"
 
 namespace tchat {

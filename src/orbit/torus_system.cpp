@@ -4,12 +4,185 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
-#include "orbit/coupling.hpp"
-#include "orbit/rotation.hpp"
+#include "orbit/defining_system.hpp"
 
 namespace tchat {
+
+namespace {
+
+constexpr double turn = 2.0 * std::numbers::pi;
+
+/// Derivative of K of any order, the sum.
+double kernel_sum(int harmonics, double t, int derivative) {
+  const double quarter = 0.25 * derivative;  // each derivative turns the cosine by a quarter
+  double sum = derivative == 0 ? 1.0 : 0.0;
+  for (int k = 1; k <= harmonics; ++k) {
+    const double phase = k * t;
+    double factor = 2.0;
+    for (int d = 0; d < derivative; ++d) factor *= turn * k;
+    sum += factor * std::cos(turn * (phase - std::floor(phase) + quarter));
+  }
+  return sum / (2 * harmonics + 1);
+}
+
+/// K and K' in closed form, K = sin(pi N t) / (N sin(pi t)), but for t so near to a whole number that K' would lose
+/// digits: there are one or two of those among N equally spaced t.
+double kernel(int harmonics, double t, int derivative) {
+  const int count = 2 * harmonics + 1;
+  const double s = std::sin(0.5 * turn * t);
+  if (derivative > 1 || std::abs(s) < 1.0 / count) return kernel_sum(harmonics, t, derivative);
+  const double top = std::sin(0.5 * turn * count * t);
+  if (derivative == 0) return top / (count * s);
+  const double slope = count * std::cos(0.5 * turn * count * t) * s - top * std::cos(0.5 * turn * t);
+  return 0.5 * turn * slope / (count * s * s);
+}
+
+}  // namespace
+
+Eigen::RowVectorXd interpolation_weights(int count, double phi, int derivative) {
+  Eigen::RowVectorXd weights(count);
+  set_interpolation_weights(phi, derivative, weights);
+  return weights;
+}
+
+void set_interpolation_weights(double phi, int derivative, Eigen::RowVectorXd& weights) {
+  const auto count = static_cast<int>(weights.size());
+  for (int l = 0; l < count; ++l)
+    weights(l) = kernel((count - 1) / 2, phi - static_cast<double>(l) / count, derivative);
+}
+
+Eigen::MatrixXd resampled_curve(const Eigen::MatrixXd& values, int count) {
+  const auto old_count = static_cast<int>(values.cols());
+  const int harmonics = (std::min(count, old_count) - 1) / 2;
+  // With the kernel of the fewer harmonics, as a mean over the old values.
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(values.rows(), count);
+  for (int i = 0; i < count; ++i)
+    for (int l = 0; l < old_count; ++l) {
+      const double t = static_cast<double>(i) / count - static_cast<double>(l) / old_count;
+      result.col(i) += kernel(harmonics, t, 0) * (2 * harmonics + 1) / old_count * values.col(l);
+    }
+  return result;
+}
+
+Eigen::VectorXd harmonic_sizes(const Eigen::MatrixXd& values, const Eigen::VectorXd& scale) {
+  const auto count = static_cast<int>(values.cols());
+  Eigen::VectorXd sizes((count + 1) / 2);
+  Eigen::VectorXd cosines(count);
+  Eigen::VectorXd sines(count);
+  for (int k = 0; k < sizes.size(); ++k) {
+    for (int l = 0; l < count; ++l) {
+      const double phase = turn * static_cast<double>((k * l) % count) / count;
+      cosines(l) = std::cos(phase);
+      sines(l) = std::sin(phase);
+    }
+    const double factor = (k == 0 ? 1.0 : 2.0) / count;
+    const Eigen::VectorXd a = values * cosines;
+    const Eigen::VectorXd b = values * sines;
+    sizes(k) = factor * ((a.cwiseAbs2() + b.cwiseAbs2()).cwiseSqrt().cwiseQuotient(scale)).maxCoeff();
+  }
+  return sizes;
+}
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double whole_angle = 2.0 * std::numbers::pi;
+/// Of the values of a function: what rounding of 2 pi may do to them.
+constexpr double rounding_of_angles = 1e-9;
+constexpr int most_turns = 3;
+
+VectorXd function_value(const HybridSystem& system, FunctionKind kind, int index, const VectorXd& x,
+                        const VectorXd& par) {
+  VectorXd out(system.rows(kind));
+  system.value(kind, index, x.data(), par.data(), out.data());
+  return out;
+}
+
+/// Do the functions of a segment not see that a state is a turn further?
+bool is_blind(const HybridSystem& system, const IndexVector& index, const VectorXd& x, const VectorXd& further,
+              const VectorXd& par) {
+  const auto differs = [&](FunctionKind kind, int which, const VectorXd& shift) {
+    const VectorXd here = function_value(system, kind, which, x, par);
+    const VectorXd there = function_value(system, kind, which, further, par) - shift;
+    return !((here - there).cwiseAbs().maxCoeff() <= rounding_of_angles * (1.0 + here.cwiseAbs().maxCoeff()));
+  };
+  const VectorXd none = VectorXd::Zero(x.size());
+  return !differs(FunctionKind::field, index.field, none) &&
+         !differs(FunctionKind::event, index.event, VectorXd::Zero(1)) &&
+         !differs(FunctionKind::jump, index.jump, further - x);
+}
+
+bool is_angle(const HybridSystem& system, const Signature& one_return, const MatrixXd& samples, Index state,
+              const VectorXd& par) {
+  for (Index k = 0; k < samples.cols(); ++k) {
+    const VectorXd x = samples.col(k);
+    VectorXd further = x;
+    further(state) += whole_angle;
+    for (const IndexVector& index : one_return)
+      if (!is_blind(system, index, x, further, par)) return false;
+  }
+  return true;
+}
+
+double last_harmonics_of(const VectorXd& values, double w) {
+  Eigen::RowVectorXd row = values.transpose();
+  for (Index l = 0; l < row.size(); ++l) row(l) -= w * static_cast<double>(l) / static_cast<double>(row.size());
+  const VectorXd sizes = harmonic_sizes(row, VectorXd::Ones(1));
+  return sizes.tail(std::min<Index>(2, sizes.size() - 1)).maxCoeff();
+}
+
+}  // namespace
+
+TorusWinding no_winding(int dimension) { return {VectorXd::Zero(dimension), VectorXd::Zero(dimension)}; }
+
+double likely_winding(const VectorXd& values) {
+  double best = 0.0;
+  double least = last_harmonics_of(values, 0.0);
+  for (int turns = -most_turns; turns <= most_turns; ++turns) {
+    const double last = last_harmonics_of(values, whole_angle * turns);
+    if (!(last < least)) continue;
+    least = last;
+    best = whole_angle * turns;
+  }
+  return best;
+}
+
+std::vector<Index> angle_states(const HybridSystem& system, const Signature& one_return, const MatrixXd& samples,
+                                const VectorXd& par) {
+  std::vector<Index> angles;
+  for (Index state = 0; state < samples.rows(); ++state)
+    if (is_angle(system, one_return, samples, state, par)) angles.push_back(state);
+  return angles;
+}
+
+TorusWinding torus_winding(const HybridSystem& system, const Signature& one_return, const Orbit& x) {
+  const auto m = static_cast<Index>(one_return.size());
+  const Index n = x.shape.dimension;
+  const Index orbits = x.shape.segments / m;
+  MatrixXd curve(n, orbits);
+  for (Index l = 0; l < orbits; ++l) curve.col(l) = Eigen::Map<const VectorXd>(x.start(static_cast<int>(l * m)), n);
+  TorusWinding winding = no_winding(static_cast<int>(n));
+  const VectorXd& par = x.par;
+  const double rho = x.par.rotation();
+  const Eigen::RowVectorXd weights = interpolation_weights(static_cast<int>(orbits), rho);
+  VectorXd end = function_value(system, FunctionKind::jump, one_return.back().jump,
+                                Eigen::Map<const VectorXd>(x.end(static_cast<int>(m) - 1), n), par);
+  for (const Index state : angle_states(system, one_return, curve, par)) {
+    const double w = likely_winding(curve.row(state));
+    double target = w * rho;
+    for (Index l = 0; l < orbits; ++l)
+      target += weights(l) * (curve(state, l) - w * static_cast<double>(l) / static_cast<double>(orbits));
+    winding.curve(state) = w;
+    winding.returns(state) = whole_angle * std::round((end(state) - target) / whole_angle);
+  }
+  return winding;
+}
 
 namespace {
 

@@ -1,38 +1,92 @@
-/// Problem types 182 and 152: invariant tori of hybrid systems, as closed curves of a return map.
-///
-/// The signature I_1..I_m is one return to a section. A torus meets it in a closed curve u(phi), phi of period 1, which
-/// the return map P takes to itself as a rotation, P(u(phi)) = u(phi + rho) (dissertation, 2.4: the map on the
-/// intersection of torus and section). N = 2 Q + 1 orbits of one return each start at u_i = u(i / N), i = 0..N-1, and u
-/// is the trigonometric polynomial through them (rotation.hpp):
-///
-///     x'_{i,s} = T_{i,s} f(x_{i,s}),   h_{j_s}(x_{i,s}(1)) = 0,   x_{i,s+1}(0) = g_{k_s}(x_{i,s}(1))   (s < m),
-///     sum_l R_il(rho) x_{l,1}(0) = g_{k_m}(x_{i,m}(1)),     R_il(rho) = K(rho + (i - l) / N),
-///     sum_i (u_i - r_i) . r'_i = 0        (phase: r is the curve that the step goes from, r' its derivative by phi).
-///
-/// Count. Unknowns: n m N functions, m N durations, two of the parameters, rho among them or not. Conditions: n m N + m
-/// N coupling rows, one phase condition, pseudo-arclength. So rho fixed and two parameters of the problem free, or rho
-/// and one. Any phi + const is the same torus: the phase condition takes that out, and nothing else is left free, for
-/// the events keep the time.
-///
-/// Segments of the orbit are those of the N returns one after the other: segment i m + s. Each is condensed for itself,
-/// in time linear in N; R couples the starts of the N returns, a block of n N rows that is dense in the starts,
-/// component by component, of which elimination makes a dense matrix of n N columns: n^3 N^3 operations of blocks of
-/// LAPACK's kind within the sparse factorisation, 8 n^2 N^2 bytes.
-///
-/// A state that is an angle counted modulo 2 pi may wind (torus_winding.hpp): u(phi + 1) = u(phi) + w, and a return may
-/// end whole turns further, P(u(phi)) = u(phi + rho) + c. What is interpolated then is u(phi) - w phi, and the target
-/// is
-///
-///     sum_l R_il(rho) (x_{l,1}(0) - w l / N) + w (i / N + rho) + c.
-///
-/// rho is PAR(ParameterLayout::rotation()). What the torus is in terms of frequencies: one return lasts T = mean over
-/// phi of the return time on the average, omega_1 = 2 pi / T, omega_2 = rho omega_1.
+/// Invariant tori as closed curves of a return map: trigonometric interpolation, angles modulo 2 pi, and the defining
+/// systems.
 #pragma once
 
+#include <Eigen/Core>
+#include <vector>
+
+#include "model/hybrid_system.hpp"
+#include "model/index_vector.hpp"
+#include "orbit/orbit.hpp"
 #include "orbit/periodic_orbit_system.hpp"
-#include "orbit/torus_winding.hpp"
 
 namespace tchat {
+
+// Closed curves by their values at N = 2 Q + 1 equal phases, and the trigonometric polynomial through them.
+//
+//     u(phi) = sum_l K(phi - l / N) u_l,     K(t) = (1 + 2 sum_{k=1..Q} cos 2 pi k t) / N
+//
+// K and its derivatives are all there is: shifted by rho the curve has the values sum_l K(rho + (i - l) / N) u_l, a
+// circulant matrix; its derivative by phi likewise with K'.
+
+/// Weights of u_0 .. u_{N-1} in u(phi), or in its derivative of an order from 0 by phi; N odd.
+Eigen::RowVectorXd interpolation_weights(int count, double phi, int derivative = 0);
+
+/// The same into a vector of N entries: allocates nothing.
+void set_interpolation_weights(double phi, int derivative, Eigen::RowVectorXd& weights);
+
+/// The curve whose values are the columns of `values`, by `count` values (odd): harmonics that are new are zero, those
+/// that are too many are left out.
+Eigen::MatrixXd resampled_curve(const Eigen::MatrixXd& values, int count);
+
+/// Sizes of the harmonics k = 0..Q, the largest over the rows: |a_k - i b_k| of a_k cos 2 pi k phi + b_k sin 2 pi k
+/// phi, each row divided by its entry of `scale`.
+Eigen::VectorXd harmonic_sizes(const Eigen::MatrixXd& values, const Eigen::VectorXd& scale);
+
+// States of a torus that are angles, counted modulo 2 pi.
+//
+// A state is an angle for a return where 2 pi more of it changes nothing: neither the fields nor the event functions,
+// and of the jumps nothing but the same 2 pi. Along a torus it may go round: then the curve u(phi) of a section does
+// not close, and a return may end whole turns further,
+//
+//     u(phi + 1) = u(phi) + w,     P(u(phi)) = u(phi + rho) + c,     w and c whole multiples of 2 pi.
+
+struct TorusWinding {
+  Eigen::VectorXd curve;    ///< w, n
+  Eigen::VectorXd returns;  ///< c, n
+};
+
+TorusWinding no_winding(int dimension);
+
+/// The angles among the states, from 0: what is said above, seen at the columns of `samples` (n x K).
+std::vector<Eigen::Index> angle_states(const HybridSystem& system, const Signature& one_return,
+                                       const Eigen::MatrixXd& samples, const Eigen::VectorXd& par);
+
+/// Of an angle at N equal phases: that multiple of 2 pi with which the last harmonics of u - w phi are least.
+double likely_winding(const Eigen::VectorXd& values);
+
+/// Of N orbits of one return each.
+TorusWinding torus_winding(const HybridSystem& system, const Signature& one_return, const Orbit& x);
+
+// Problem types 182 and 152: invariant tori of hybrid systems, as closed curves of a return map.
+//
+// The signature I_1..I_m is one return to a section. A torus meets it in a closed curve u(phi), phi of period 1, which
+// the return map P takes to itself as a rotation, P(u(phi)) = u(phi + rho) (dissertation, 2.4: the map on the
+// intersection of torus and section). N = 2 Q + 1 orbits of one return each start at u_i = u(i / N), i = 0..N-1, and u
+// is the trigonometric polynomial through them (interpolation_weights()):
+//
+//     x'_{i,s} = T_{i,s} f(x_{i,s}),   h_{j_s}(x_{i,s}(1)) = 0,   x_{i,s+1}(0) = g_{k_s}(x_{i,s}(1))   (s < m),
+//     sum_l R_il(rho) x_{l,1}(0) = g_{k_m}(x_{i,m}(1)),     R_il(rho) = K(rho + (i - l) / N),
+//     sum_i (u_i - r_i) . r'_i = 0        (phase: r is the curve that the step goes from, r' its derivative by phi).
+//
+// Count. Unknowns: n m N functions, m N durations, two of the parameters, rho among them or not. Conditions: n m N + m
+// N coupling rows, one phase condition, pseudo-arclength. So rho fixed and two parameters of the problem free, or rho
+// and one. Any phi + const is the same torus: the phase condition takes that out, and nothing else is left free, for
+// the events keep the time.
+//
+// Segments of the orbit are those of the N returns one after the other: segment i m + s. Each is condensed for itself,
+// in time linear in N; R couples the starts of the N returns, a block of n N rows that is dense in the starts,
+// component by component, of which elimination makes a dense matrix of n N columns: n^3 N^3 operations of blocks of
+// LAPACK's kind within the sparse factorisation, 8 n^2 N^2 bytes.
+//
+// A state that is an angle counted modulo 2 pi may wind (TorusWinding): u(phi + 1) = u(phi) + w, and a return may
+// end whole turns further, P(u(phi)) = u(phi + rho) + c. What is interpolated then is u(phi) - w phi, and the target
+// is
+//
+//     sum_l R_il(rho) (x_{l,1}(0) - w l / N) + w (i / N + rho) + c.
+//
+// rho is PAR(ParameterLayout::rotation()). What the torus is in terms of frequencies: one return lasts T = mean over
+// phi of the return time on the average, omega_1 = 2 pi / T, omega_2 = rho omega_1.
 
 class TorusSystem final : public PeriodicOrbitSystem {
  public:

@@ -6,7 +6,7 @@
 #include "model/contact_segment.hpp"
 #include "model/event_at.hpp"
 #include "model/identity_jump.hpp"
-#include "orbit/transversality.hpp"
+#include "orbit/admissibility.hpp"
 #include "resegment/new_orbit.hpp"
 
 namespace tchat {

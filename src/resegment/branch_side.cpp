@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "base/user_error.hpp"
-#include "orbit/grazing_orbit_system.hpp"
+#include "orbit/periodic_orbit_system.hpp"
 #include "resegment/orbit_pieces.hpp"
 #include "run/branch_setup.hpp"
 

@@ -10,7 +10,7 @@
 #include "model/contact_segment.hpp"
 #include "model/event_at.hpp"
 #include "model/identity_jump.hpp"
-#include "orbit/no_duration.hpp"
+#include "orbit/orbit.hpp"
 #include "resegment/contact_point.hpp"
 #include "resegment/simultaneous_contacts.hpp"
 

@@ -8,7 +8,7 @@
 #include "base/number.hpp"
 #include "base/user_error.hpp"
 #include "base/words.hpp"
-#include "orbit/no_duration.hpp"
+#include "orbit/orbit.hpp"
 #include "settings/constant_value.hpp"
 #include "settings/problem_type.hpp"
 

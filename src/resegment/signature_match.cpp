@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "base/user_error.hpp"
-#include "orbit/no_duration.hpp"
+#include "orbit/orbit.hpp"
 #include "resegment/empty_segments.hpp"
 
 namespace tchat {

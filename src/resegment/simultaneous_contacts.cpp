@@ -6,10 +6,10 @@
 
 #include "model/event_at.hpp"
 #include "model/identity_jump.hpp"
+#include "orbit/admissibility.hpp"
 #include "orbit/event_minima.hpp"
-#include "orbit/no_duration.hpp"
+#include "orbit/orbit.hpp"
 #include "orbit/periodic_orbit_system.hpp"
-#include "orbit/transversality.hpp"
 
 namespace tchat {
 

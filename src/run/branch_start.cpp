@@ -10,7 +10,7 @@
 #include "continuation/branch_analysis.hpp"
 #include "continuation/path_follower.hpp"
 #include "files/labelled_solution.hpp"
-#include "orbit/unfolded_system.hpp"
+#include "orbit/ring_system.hpp"
 #include "run/first_correction.hpp"
 #include "settings/point_type.hpp"
 #include "settings/problem_type.hpp"

@@ -9,7 +9,7 @@
 
 #include "base/user_error.hpp"
 #include "files/labelled_solution.hpp"
-#include "orbit/critical_multiplier.hpp"
+#include "orbit/curve_conditions.hpp"
 #include "settings/family.hpp"
 #include "settings/point_type.hpp"
 #include "settings/problem_type.hpp"

@@ -12,7 +12,7 @@
 #include "base/user_error.hpp"
 #include "continuation/branch_analysis.hpp"
 #include "model/undefined_value.hpp"
-#include "orbit/evaluation_failure.hpp"
+#include "orbit/defining_system.hpp"
 #include "orbit/mesh_adaptation.hpp"
 #include "plugin/named_parameters.hpp"
 

@@ -7,7 +7,6 @@
 
 #include "base/user_error.hpp"
 #include "orbit/mesh_adaptation.hpp"
-#include "orbit/mesh_in_common.hpp"
 #include "settings/problem_type.hpp"
 
 namespace tchat {

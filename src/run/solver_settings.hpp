@@ -5,8 +5,8 @@
 
 #include "continuation/continuation_run.hpp"
 #include "continuation/newton_chord.hpp"
+#include "orbit/collocation_rule.hpp"
 #include "orbit/orbit.hpp"
-#include "orbit/weighted_norm.hpp"
 #include "settings/run_settings.hpp"
 
 namespace tchat {

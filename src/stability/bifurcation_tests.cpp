@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "model/identity_jump.hpp"
+#include "orbit/admissibility.hpp"
 #include "orbit/condensed_system.hpp"
-#include "orbit/no_duration.hpp"
-#include "orbit/transversality.hpp"
+#include "orbit/orbit.hpp"
 #include "stability/label_evidence.hpp"
 #include "stability/normal_form_text.hpp"
 

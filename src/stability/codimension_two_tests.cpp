@@ -11,7 +11,7 @@
 #include <string>
 
 #include "orbit/condensed_system.hpp"
-#include "orbit/orbit_accuracy.hpp"
+#include "orbit/orbit.hpp"
 #include "stability/bifurcation_tests.hpp"
 #include "stability/label_evidence.hpp"
 #include "stability/normal_form.hpp"

@@ -10,7 +10,7 @@
 /// The other curve, or curves, go on there as well. Coefficients are computed only if `coefficients`.
 #pragma once
 
-#include "orbit/critical_pair.hpp"
+#include "orbit/curve_conditions.hpp"
 #include "stability/test_function.hpp"
 
 namespace tchat {

@@ -7,10 +7,10 @@
 #include <cmath>
 
 #include "model/event_at.hpp"
+#include "orbit/admissibility.hpp"
 #include "orbit/condensed_system.hpp"
 #include "orbit/event_minima.hpp"
-#include "orbit/no_duration.hpp"
-#include "orbit/transversality.hpp"
+#include "orbit/orbit.hpp"
 #include "stability/bifurcation_tests.hpp"
 
 namespace tchat {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <memory>
 
-#include "orbit/orbit_accuracy.hpp"
-#include "orbit/transversality.hpp"
+#include "orbit/admissibility.hpp"
+#include "orbit/orbit.hpp"
 #include "stability/normal_form_text.hpp"
 
 namespace tchat {

@@ -3,9 +3,8 @@
 /// functions read the curve's condition, which must outlive them and is evaluated at the tested point.
 #pragma once
 
-#include "orbit/critical_multiplier.hpp"
-#include "orbit/critical_pair.hpp"
-#include "orbit/stationary_monitor.hpp"
+#include "orbit/curve_conditions.hpp"
+#include "orbit/monitor_gradient.hpp"
 #include "stability/test_function.hpp"
 
 namespace tchat {

@@ -11,7 +11,7 @@
 #include "linear/dense_matrix.hpp"
 #include "orbit/condensed_system.hpp"
 #include "orbit/defining_system.hpp"
-#include "orbit/orbit_accuracy.hpp"
+#include "orbit/orbit.hpp"
 #include "stability/equilibrium_eigenvalues.hpp"
 #include "stability/label_evidence.hpp"
 #include "stability/lyapunov_coefficient.hpp"

@@ -3,8 +3,7 @@
 /// and without poles.
 #pragma once
 
-#include "orbit/equilibrium_fold.hpp"
-#include "orbit/hopf_pair.hpp"
+#include "orbit/equilibrium_system.hpp"
 #include "stability/test_function.hpp"
 
 namespace tchat {

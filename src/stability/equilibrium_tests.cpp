@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "orbit/orbit_accuracy.hpp"
+#include "orbit/orbit.hpp"
 #include "stability/bifurcation_tests.hpp"
 #include "stability/equilibrium_eigenvalues.hpp"
 #include "stability/normal_form_text.hpp"

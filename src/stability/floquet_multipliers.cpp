@@ -6,8 +6,8 @@
 #include "linear/dense_matrix.hpp"
 #include "linear/reflection.hpp"
 #include "model/event_at.hpp"
-#include "orbit/no_duration.hpp"
-#include "orbit/transversality.hpp"
+#include "orbit/admissibility.hpp"
+#include "orbit/orbit.hpp"
 
 namespace tchat {
 

@@ -6,8 +6,8 @@
 
 #include "linear/dense_matrix.hpp"
 #include "model/event_at.hpp"
+#include "orbit/admissibility.hpp"
 #include "orbit/condensed_system.hpp"
-#include "orbit/transversality.hpp"
 #include "stability/bifurcation_tests.hpp"
 #include "stability/grazing_response.hpp"
 

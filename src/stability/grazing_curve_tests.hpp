@@ -9,7 +9,7 @@
 /// xi_n > 0: no new impact n returns after one of low velocity. g_D is the jump that contact would bring (GRJUMP).
 #pragma once
 
-#include "orbit/grazing_orbit_system.hpp"
+#include "orbit/periodic_orbit_system.hpp"
 #include "stability/test_function.hpp"
 
 namespace tchat {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "orbit/orbit_accuracy.hpp"
-#include "orbit/transversality.hpp"
+#include "orbit/admissibility.hpp"
+#include "orbit/orbit.hpp"
 
 namespace tchat {
 

@@ -14,7 +14,7 @@
 /// state moves by q eps on the doubled orbits, where eps^2 is about (-1 - mu(parameter)) / c. q has its largest entry
 /// positive, which fixes the sign of a.
 ///
-/// No derivative of the map is formed. With M(mu) of nodal_system.hpp the whole orbit is expanded
+/// No derivative of the map is formed. With M(mu) of return_map.hpp the whole orbit is expanded
 /// (return_map_forms.hpp): M(mu) V = 0 and W M(mu) = 0 are q and p on all nodes and rows, M(1) H = -F''(V, V) is the
 /// second term, F the equations, and c = -W (F'''(V, V, V) + 3 F''(V, H)) / 6: solutions of linear problems
 /// that are as well posed as the orbit's own, however much it contracts or expands. One factorisation of M(mu_0) serves
@@ -27,7 +27,6 @@
 
 #include "orbit/defining_system.hpp"
 #include "orbit/orbit.hpp"
-#include "orbit/orbit_condition.hpp"
 #include "stability/branching.hpp"
 #include "stability/multilinear.hpp"
 #include "stability/return_map_forms.hpp"

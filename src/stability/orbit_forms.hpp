@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <complex>
 
-#include "orbit/nodal_expansion.hpp"
+#include "orbit/orbit_expansion.hpp"
 #include "stability/multilinear.hpp"
 
 namespace tchat {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-#include "orbit/nodal_system.hpp"
+#include "orbit/return_map.hpp"
 #include "stability/condensed_orbit.hpp"
 #include "stability/orbit_forms.hpp"
 #include "stability/shifted_orbit.hpp"

@@ -1,7 +1,7 @@
 /// Coefficients of normal forms from an orbit whose segments are condensed.
 ///
-/// The equations of the whole orbit, M(mu) of nodal_system.hpp, are solved by way of S(mu), what is left of them at the
-/// ends of segments (condensed_return_map.hpp): of their elimination only the last connectivity depends on mu, and
+/// The equations of the whole orbit, M(mu) of return_map.hpp, are solved by way of S(mu), what is left of them at the
+/// ends of segments (return_map.hpp): of their elimination only the last connectivity depends on mu, and
 /// S(mu) = S(mu_0) + (mu - mu_0) E F', where F picks v_1(0) and E the last n rows. K = F' S(mu_0)^-1 E has the
 /// eigenvalues 1 / (mu_0 - mu) of the multipliers mu.
 ///
@@ -21,10 +21,10 @@
 #include <vector>
 
 #include "linear/sparse_lu.hpp"
-#include "orbit/condensed_return_map.hpp"
 #include "orbit/condensed_system.hpp"
-#include "orbit/directional_expansion.hpp"
-#include "orbit/orbit_condition.hpp"
+#include "orbit/defining_system.hpp"
+#include "orbit/orbit_expansion.hpp"
+#include "orbit/return_map.hpp"
 #include "stability/multilinear.hpp"
 
 namespace tchat {

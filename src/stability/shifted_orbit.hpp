@@ -5,11 +5,11 @@
 #include <complex>
 #include <optional>
 
-#include "orbit/nodal_system.hpp"
+#include "orbit/return_map.hpp"
 
 namespace tchat {
 
-/// Solutions of M(mu) v = r for any mu (nodal_system.hpp): M(mu) = M(mu_0) + (mu - mu_0) E F', where F picks v_1(0) and
+/// Solutions of M(mu) v = r for any mu (return_map.hpp): M(mu) = M(mu_0) + (mu - mu_0) E F', where F picks v_1(0) and
 /// E the n rows that close the orbit. K = F' M(mu_0)^-1 E has the eigenvalues 1 / (mu_0 - mu) of the multipliers mu.
 class ShiftedOrbit {
  public:

@@ -7,12 +7,11 @@
 #include <set>
 
 #include "model/sliding_modes.hpp"
+#include "orbit/admissibility.hpp"
 #include "orbit/condensed_system.hpp"
 #include "orbit/defining_system.hpp"
 #include "orbit/event_minima.hpp"
-#include "orbit/no_duration.hpp"
-#include "orbit/orbit_accuracy.hpp"
-#include "orbit/transversality.hpp"
+#include "orbit/orbit.hpp"
 #include "stability/bifurcation_tests.hpp"
 
 namespace tchat {

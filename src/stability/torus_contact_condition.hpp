@@ -11,7 +11,7 @@
 ///     dG = h_x sum_{l,k} K_l B_k dx_{l,k} + h_p dp.
 #pragma once
 
-#include "orbit/orbit_condition.hpp"
+#include "orbit/defining_system.hpp"
 #include "stability/torus_contact.hpp"
 #include "stability/torus_contact_follower.hpp"
 

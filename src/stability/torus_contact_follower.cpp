@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "orbit/rotation.hpp"
+#include "orbit/torus_system.hpp"
 
 namespace tchat {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "orbit/orbit_accuracy.hpp"
+#include "orbit/orbit.hpp"
 
 namespace tchat {
 

@@ -14,7 +14,6 @@
 #include "continuation/path_follower.hpp"
 #include "maps/invariant_curve.hpp"
 #include "motion/hybrid_simulation.hpp"
-#include "orbit/rotation.hpp"
 #include "orbit/torus_system.hpp"
 #include "stability/torus_multipliers.hpp"
 #include "support/test_system.hpp"

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "continuation/homoclinic_limit.hpp"
-#include "orbit/critical_pair.hpp"
+#include "orbit/curve_conditions.hpp"
 #include "stability/bifurcation_tests.hpp"
 #include "stability/curve_tests.hpp"
 #include "support/branch_fixture.hpp"

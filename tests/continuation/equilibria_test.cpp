@@ -4,9 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "orbit/equilibrium_fold.hpp"
 #include "orbit/equilibrium_system.hpp"
-#include "orbit/hopf_pair.hpp"
 #include "run/branch_setup.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/run_settings.hpp"

@@ -5,7 +5,6 @@
 
 #include "../../problems/torus/torus.cpp"
 #include "continuation/path_follower.hpp"
-#include "orbit/rotation.hpp"
 #include "orbit/torus_system.hpp"
 #include "support/sampled_orbit.hpp"
 #include "support/test_system.hpp"

@@ -9,7 +9,7 @@
 #include "maps/grazing_problems.hpp"
 #include "maps/grazing_verdict.hpp"
 #include "motion/orbit_flow.hpp"
-#include "orbit/surface_rate.hpp"
+#include "orbit/ring_system.hpp"
 #include "support/random_matrices.hpp"
 
 using namespace tchat;

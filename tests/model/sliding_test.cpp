@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "model/sliding_modes.hpp"
-#include "orbit/sliding_violations.hpp"
+#include "orbit/admissibility.hpp"
 #include "support/test_system.hpp"
 
 using namespace tchat;

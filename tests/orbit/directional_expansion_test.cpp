@@ -4,7 +4,7 @@
 #include <random>
 
 #include "orbit/condensed_system.hpp"
-#include "orbit/directional_expansion.hpp"
+#include "orbit/orbit_expansion.hpp"
 #include "orbit/periodic_orbit_system.hpp"
 #include "support/sampled_orbit.hpp"
 #include "support/three_modes.hpp"

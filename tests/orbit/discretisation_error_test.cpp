@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "orbit/discretisation_error.hpp"
+#include "orbit/collocation_rule.hpp"
 #include "support/sampled_orbit.hpp"
 #include "support/test_system.hpp"
 

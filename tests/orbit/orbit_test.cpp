@@ -1,8 +1,8 @@
 // Orbits, vectors of unknowns, and the inner product of pseudo-arclength.
 #include <catch2/catch.hpp>
 
+#include "orbit/collocation_rule.hpp"
 #include "orbit/orbit.hpp"
-#include "orbit/weighted_norm.hpp"
 #include "support/sampled_orbit.hpp"
 
 using namespace tchat;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "orbit/mesh_in_common.hpp"
+#include "orbit/mesh_adaptation.hpp"
 #include "support/branch_fixture.hpp"
 #include "support/linear_oscillator.hpp"
 #include "support/sharp_start.hpp"

@@ -7,7 +7,7 @@
 
 #include "../../problems/langford/langford.cpp"
 #include "motion/orbit_flow.hpp"
-#include "orbit/rotation.hpp"
+#include "orbit/torus_system.hpp"
 #include "published/chain.hpp"
 #include "published/smooth_motion.hpp"
 #include "published/two_walls.hpp"

@@ -6,12 +6,10 @@
 
 #include "impacting_orbits.hpp"
 #include "langford.hpp"
-#include "orbit/critical_branch_point.hpp"
-#include "orbit/critical_multiplier.hpp"
-#include "orbit/critical_pair.hpp"
+#include "orbit/curve_conditions.hpp"
 #include "orbit/monitor.hpp"
+#include "orbit/monitor_gradient.hpp"
 #include "orbit/periodic_orbit_system.hpp"
-#include "orbit/stationary_monitor.hpp"
 #include "stability/normal_form.hpp"
 
 using namespace tchat;

@@ -4,8 +4,7 @@
 #include "continuation/path_follower.hpp"
 #include "impacting_orbits.hpp"
 #include "langford.hpp"
-#include "orbit/critical_multiplier.hpp"
-#include "orbit/critical_pair.hpp"
+#include "orbit/curve_conditions.hpp"
 #include "orbit/periodic_orbit_system.hpp"
 
 using namespace tchat;
