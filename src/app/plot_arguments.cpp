@@ -13,11 +13,10 @@
 #include "base/words.hpp"
 #include "files/run_file_kind.hpp"
 #include "files/trajectory_rows.hpp"
-#include "plot/data_file.hpp"
+#include "plot/figure.hpp"
 #include "plot/label_text.hpp"
-#include "plot/picture_styles.hpp"
-#include "plot/sweep_layer.hpp"
-#include "plot/trajectory_file.hpp"
+#include "plot/orbit_figure.hpp"
+#include "plot/underlay.hpp"
 #include "settings/constant_value.hpp"
 
 namespace tchat {

@@ -13,8 +13,8 @@
 #include "app/plot_pictures.hpp"
 #include "base/user_error.hpp"
 #include "base/warnings.hpp"
-#include "plot/picture_format.hpp"
 #include "plot/picture_output.hpp"
+#include "plot/picture_sheet.hpp"
 
 namespace tchat {
 

@@ -16,7 +16,7 @@
 #include "files/point_type_table.hpp"
 #include "files/run_file_kind.hpp"
 #include "files/run_file_names.hpp"
-#include "plot/quantity_table.hpp"
+#include "plot/branch_quantity.hpp"
 
 namespace tchat {
 

@@ -10,7 +10,7 @@
 #include <map>
 #include <tuple>
 
-#include "plot/thinned_points.hpp"
+#include "plot/picture_sheet.hpp"
 
 namespace tchat {
 

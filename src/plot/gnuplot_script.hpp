@@ -9,7 +9,6 @@
 
 #include "plot/figure.hpp"
 #include "plot/layout.hpp"
-#include "plot/picture_format.hpp"
 #include "plot/picture_sheet.hpp"
 
 namespace tchat {

@@ -1,12 +1,10 @@
 #include "plot/layout.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-
-#include "plot/curve_symbols.hpp"
-#include "plot/key_placement.hpp"
-#include "plot/short_pieces.hpp"
+#include <numeric>
 
 namespace tchat {
 
@@ -246,6 +244,232 @@ FigureLayout lay_out(const Figure& figure) {
     place_marker_labels(figure.panels[k], place, obstacles, font);
   }
   return layout;
+}
+
+namespace {
+
+// In units of the font's size:
+constexpr double sample_and_gap = key_sample_length + 0.5;
+constexpr double column_gap = 1.2;
+constexpr double smallest_font = 0.3;
+
+/// A corner or the middle of an edge as parts of the free width and height.
+struct Corner {
+  double x, y;
+  double cost;  // in pixels of covered curves: what is usual comes first
+};
+constexpr std::array<Corner, 8> corners = {{{1.0, 1.0, 0.0},
+                                            {0.0, 1.0, 0.1},
+                                            {1.0, 0.0, 0.2},
+                                            {0.0, 0.0, 0.3},
+                                            {0.5, 1.0, 0.4},
+                                            {0.5, 0.0, 0.5},
+                                            {1.0, 0.5, 0.6},
+                                            {0.0, 0.5, 0.7}}};
+
+}  // namespace
+
+KeyGrid::KeyGrid(const std::vector<KeyEntry>& entries, double font) : font_(font) {
+  for (const KeyEntry& entry : entries)
+    widths_.push_back(text_width(entry.text) * label_font_ratio + sample_and_gap + 0.3);
+  fill(1);
+}
+
+KeyGrid::KeyGrid(const std::vector<KeyEntry>& entries, double font, double width, double height)
+    : KeyGrid(entries, font) {
+  for (; !empty(); font_ *= 0.9) {
+    for (std::size_t columns = widths_.size(); columns > 0; --columns) {
+      fill(columns);
+      if (this->width() <= width && (this->height() <= height || font_ < smallest_font * font)) return;
+    }
+    if (font_ < 0.01 * font) return;  // a width of nothing
+  }
+}
+
+/// Entries fill the columns one after the other.
+void KeyGrid::fill(std::size_t columns) {
+  rows_ = (widths_.size() + columns - 1) / columns;
+  columns_.clear();
+  for (std::size_t k = 0; k < widths_.size(); ++k) {
+    if (k % rows_ == 0) columns_.push_back(0.0);
+    columns_.back() = std::max(columns_.back(), widths_[k]);
+  }
+}
+
+double KeyGrid::width() const {
+  const double gaps = columns_.empty() ? 0.0 : column_gap * static_cast<double>(columns_.size() - 1);
+  return (std::accumulate(columns_.begin(), columns_.end(), 0.0) + gaps) * font_;
+}
+
+KeyPlace KeyGrid::placed(double left, double bottom, bool inside) const {
+  KeyPlace place{{left, left + width(), bottom, bottom + height()}, inside, font_, {}};
+  const double first = place.box.top - 0.2 * font_ - 0.5 * line_height();
+  for (std::size_t k = 0; k < widths_.size(); ++k) {
+    if (k > 0 && k % rows_ == 0) left += (columns_[k / rows_ - 1] + column_gap) * font_;
+    place.entries.push_back({left, first - static_cast<double>(k % rows_) * line_height()});
+  }
+  return place;
+}
+
+std::optional<KeyPlace> KeyGrid::place_inside(const Obstacles& obstacles) const {
+  Box area = obstacles.frame.grown(-0.4 * font_);
+  area.left += 0.5 * font_, area.right -= 0.2 * font_;  // clear of the tics
+  const double free_x = area.width() - width();
+  const double free_y = area.height() - height();
+  if (free_x < 0.35 * area.width() || free_y < 0.35 * area.height()) return std::nullopt;
+  std::optional<KeyPlace> best;
+  double least = 0.5 * font_;  // a little of a curve under the key's margin does no harm
+  for (const Corner& corner : corners) {
+    const double left = area.left + corner.x * free_x;
+    const double bottom = area.bottom + corner.y * free_y;
+    const Box box{left, left + width(), bottom, bottom + height()};
+    double cost = corner.cost + obstacles.curve_length(box);
+    for (const Box& marker : obstacles.markers)
+      if (shared_area(box.grown(1.2 * font_), marker) > 0.0) cost += 2.0 * font_;
+    for (const PicturePoint& dot : obstacles.dots)
+      if (box.contains(dot)) cost += 0.1 * font_;
+    if (cost < least) least = cost, best = placed(left, bottom, true);
+  }
+  return best;
+}
+
+KeyPlace KeyGrid::place_above(const Box& frame, double picture_width) const {
+  const double left = std::min(frame.centre().x - 0.5 * width(), picture_width - 0.5 * font_ - width());
+  return placed(std::max(left, 0.5 * font_), frame.top + 0.2 * font_, false);
+}
+
+namespace {
+
+// In units of the font's size:
+constexpr double symbol_distance = 9.0;
+constexpr double shortest_line = 3.0;
+constexpr double clear_of_markers = 1.3;
+constexpr double clear_of_frame = 0.6;
+
+double distance(const PicturePoint& a, const PicturePoint& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+
+/// A line on the paper, measured where it is seen.
+class VisibleLine {
+ public:
+  VisibleLine(const Curve& curve, const PanelLayout& layout, const Box& frame) {
+    for (const PicturePoint& point : curve.points) {
+      const PicturePoint at = layout.on_paper(point);
+      if (!points_.empty()) {
+        const bool seen =
+            is_finite(at) && is_finite(points_.back()) && frame.contains(at) && frame.contains(points_.back());
+        ends_.push_back(length() + (seen ? distance(points_.back(), at) : 0.0));
+      }
+      points_.push_back(at);
+    }
+  }
+
+  double length() const { return ends_.empty() ? 0.0 : ends_.back(); }
+
+  /// The point at this length from the beginning, between 0 and length().
+  PicturePoint at(double wanted) const {
+    const auto k = static_cast<std::size_t>(std::lower_bound(ends_.begin(), ends_.end(), wanted) - ends_.begin());
+    const double begin = k == 0 ? 0.0 : ends_[k - 1];
+    const double part = ends_[k] > begin ? (wanted - begin) / (ends_[k] - begin) : 0.0;
+    const PicturePoint a = points_[k], b = points_[k + 1];
+    return {a.x + part * (b.x - a.x), a.y + part * (b.y - a.y)};
+  }
+
+ private:
+  std::vector<PicturePoint> points_;
+  std::vector<double> ends_;  // length up to the end of each interval
+};
+
+/// The place nearest to the wanted length that is clear of these points.
+std::optional<PicturePoint> clear_place(const VisibleLine& line, double wanted, const std::vector<PicturePoint>& taken,
+                                        double font) {
+  for (const double shift : {0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0}) {
+    const double length = wanted + shift * font;
+    if (length <= 0.0 || length >= line.length()) continue;
+    const PicturePoint place = line.at(length);
+    const bool is_clear = std::all_of(taken.begin(), taken.end(), [&](const PicturePoint& other) {
+      return distance(place, other) > clear_of_markers * font;
+    });
+    if (is_clear) return place;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<Marker> symbols_along_curves(const Panel& panel, const PanelLayout& layout, double font) {
+  std::vector<PicturePoint> taken;
+  for (const Marker& marker : panel.markers) taken.push_back(layout.on_paper(marker.at));
+  std::vector<Marker> symbols;
+  for (const Curve& curve : panel.curves) {
+    if (!curve.symbol) continue;
+    const VisibleLine line(curve, layout, layout.frame.grown(-clear_of_frame * font));
+    if (!(line.length() > shortest_line * font)) continue;
+    const int count = std::max(1, static_cast<int>(std::lround(line.length() / (symbol_distance * font))));
+    for (int i = 0; i < count; ++i) {
+      const auto place = clear_place(line, (i + 0.5) * line.length() / count, taken, font);
+      if (!place) continue;
+      taken.push_back(*place);
+      symbols.push_back(*curve.symbol);
+      symbols.back().at = layout.in_data(*place);
+    }
+  }
+  return symbols;
+}
+
+namespace {
+
+// In units of the font's size:
+constexpr double few_dashes = 1.6;    // a piece of this length shows four dashes
+constexpr double label_length = 3.0;  // a label could hide it
+constexpr double marker_length = 1.4;
+constexpr double smallest_dashes = 0.4;
+constexpr double smaller_marker = 0.7;
+
+double length_on_paper(const Curve& curve, const PanelLayout& layout) {
+  double length = 0.0;
+  for (std::size_t k = 1; k < curve.points.size(); ++k) {
+    const PicturePoint a = layout.on_paper(curve.points[k - 1]), b = layout.on_paper(curve.points[k]);
+    if (is_finite(a) && is_finite(b)) length += std::hypot(b.x - a.x, b.y - a.y);
+  }
+  return length;
+}
+
+/// Small boxes along the curve.
+void add_boxes(const Curve& curve, const PanelLayout& layout, double font, std::vector<Box>& boxes) {
+  constexpr double size = 0.4;
+  for (std::size_t k = 1; k < curve.points.size(); ++k) {
+    const PicturePoint a = layout.on_paper(curve.points[k - 1]), b = layout.on_paper(curve.points[k]);
+    if (!is_finite(a) || !is_finite(b)) continue;
+    const int parts = 1 + static_cast<int>(std::hypot(b.x - a.x, b.y - a.y) / (size * font));
+    for (int i = 0; i < parts; ++i) {
+      const double from = static_cast<double>(i) / parts, to = static_cast<double>(i + 1) / parts;
+      const auto [left, right] = std::minmax({a.x + from * (b.x - a.x), a.x + to * (b.x - a.x)});
+      const auto [bottom, top] = std::minmax({a.y + from * (b.y - a.y), a.y + to * (b.y - a.y)});
+      boxes.push_back(Box{left, right, bottom, top}.grown(1.0));
+    }
+  }
+}
+
+bool is_at_end_of(const Curve& curve, const PicturePoint& at) {
+  const auto same = [&at](const PicturePoint& end) { return end.x == at.x && end.y == at.y; };
+  return same(curve.points.front()) || same(curve.points.back());
+}
+
+}  // namespace
+
+ShortPieces find_short_pieces(const Panel& panel, const PanelLayout& layout, double font) {
+  ShortPieces result{std::vector<double>(panel.curves.size(), 1.0), std::vector<double>(panel.markers.size(), 1.0), {}};
+  for (std::size_t c = 0; c < panel.curves.size(); ++c) {
+    const Curve& curve = panel.curves[c];
+    if (curve.stroke.dash == Dash::solid || curve.points.size() < 2) continue;
+    const double length = length_on_paper(curve, layout) / font;
+    result.dash_scales[c] = std::clamp(length / few_dashes, smallest_dashes, 1.0);
+    if (length < label_length) add_boxes(curve, layout, font, result.boxes);
+    if (length > marker_length) continue;
+    for (std::size_t m = 0; m < panel.markers.size(); ++m)
+      if (is_at_end_of(curve, panel.markers[m].at)) result.marker_scales[m] = smaller_marker;
+  }
+  return result;
 }
 
 }  // namespace tchat

@@ -8,7 +8,7 @@
 
 #include "base/user_error.hpp"
 #include "files/orbit_stability.hpp"
-#include "plot/picture_styles.hpp"
+#include "plot/figure.hpp"
 
 namespace tchat {
 

@@ -6,15 +6,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <set>
 
 #include "base/user_error.hpp"
 #include "base/words.hpp"
+#include "files/trajectory_rows.hpp"
 #include "model/parameter_vector.hpp"
-#include "plot/colour_scale.hpp"
 #include "plot/event_surface.hpp"
-#include "plot/picture_styles.hpp"
 #include "settings/constant_value.hpp"
 
 namespace tchat {
@@ -355,6 +355,103 @@ Figure phase_portrait(const std::vector<OrbitTrace>& orbits, const OrbitFigureOp
   for (std::size_t k = 0; k < orbits.size(); ++k) add_orbit(panel, orbits, k, place_of(states), window);
   figure.panels.push_back(std::move(panel));
   return figure;
+}
+
+namespace {
+
+/// One state of one orbit over a period.
+void add_series(Panel& panel, const OrbitTrace& orbit, int state, const Stroke& stroke, const Marker& jump) {
+  const StatePlace place = [state](double time, const Eigen::VectorXd& x) { return PicturePoint{time, x(state)}; };
+  for (std::size_t s = 0; s < orbit.segments.size(); ++s) {
+    panel.curves.push_back(segment_curve(orbit.segments[s], place, stroke));
+    if (orbit.jumps_after(s, state)) add_jump(panel, orbit, s, place, jump);
+  }
+}
+
+void add_levels(Figure& figure, Panel& panel, const EventSurfaces& surfaces, const std::vector<OrbitTrace>& orbits,
+                int state, double duration) {
+  const auto [low, high] = range_along(orbits, state, 0.5);
+  for (const EventSurfaces::Level& level : surfaces.of_state(state, low, high)) {
+    std::size_t number = 0;
+    auto known = std::find_if(figure.key.begin(), figure.key.end(),
+                              [&level](const KeyEntry& entry) { return entry.text.text == level.event.name; });
+    if (known == figure.key.end()) {
+      for (const KeyEntry& entry : figure.key) number += entry.stroke->colour == surface_entry("", 0).stroke->colour;
+      figure.key.push_back(surface_entry(level.event.name, number));
+      known = figure.key.end() - 1;
+    }
+    for (const double value : level.values)
+      panel.curves.push_back({{{-duration, value}, {2.0 * duration, value}}, *known->stroke, true});
+  }
+}
+
+}  // namespace
+
+Figure time_series(const std::vector<OrbitTrace>& orbits, const OrbitFigureOptions& options) {
+  const int n = orbits.front().dimension();
+  std::vector<int> states;
+  for (const std::string& name : options.y) states.push_back(find_state(name, n, options, "-y"));
+  if (states.empty())
+    for (int k = 0; k < std::min(n, 2); ++k) states.push_back(k);
+  double duration = 0.0;
+  for (const OrbitTrace& orbit : orbits) duration = std::max(duration, orbit.period());
+
+  Figure figure;
+  LabelText all_names;
+  const bool one_panel = options.one_panel || states.size() == 1;
+  figure.panels.resize(one_panel ? 1 : states.size());
+  for (std::size_t k = 0; k < orbits.size(); ++k)
+    if ((!one_panel || states.size() == 1) && is_in_key(orbits, options))
+      figure.key.push_back(orbit_entry(orbits, k, options));
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    Panel& panel = figure.panels[one_panel ? 0 : i];
+    const LabelText name = mathematical_name(state_name(states[i], options));
+    all_names = all_names.empty() ? name : joined(joined(all_names, plain_text(", ")), name);
+    panel.y.label = one_panel ? all_names : name;
+    panel.x.label = plain_text("time");
+    if (options.system != nullptr && options.surfaces)
+      add_levels(figure, panel, EventSurfaces(*options.system, orbits, options.events), orbits, states[i], duration);
+    for (std::size_t k = 0; k < orbits.size(); ++k) {
+      // Several states in one panel: a colour for each state of each orbit, a symbol for each orbit.
+      const bool by_state = one_panel && states.size() > 1;
+      Stroke stroke = orbit_stroke(orbits, k);
+      Marker jump = jump_marker(k, {}, true);
+      jump.size = 0.7;
+      if (by_state) {
+        jump.colour = series_colour(k * states.size() + i);
+        stroke = line_stroke(orbits[k].kind, jump.colour, 2.5);
+        const LabelText comma = plain_text(", ");
+        const std::size_t index = i * orbits.size() + k;
+        const LabelText own = index < options.legend.size() ? plain_text(options.legend[index]) : LabelText{};
+        const LabelText chosen = orbits.size() > 1 ? joined(joined(name, comma), orbit_name(orbits, k, options)) : name;
+        figure.key.push_back({own.empty() ? chosen : own, stroke, std::nullopt});
+      }
+      add_series(panel, orbits[k], states[i], stroke, jump);
+    }
+  }
+  const bool states_alone = one_panel && states.size() > 1 && orbits.size() == 1;
+  if (!options.legend.empty() || states_alone) explain_dashes(figure, orbits);
+  return figure;
+}
+
+TrajectoryFile read_trajectory_file(const std::string& path) {
+  const TrajectoryRows rows = read_trajectory_rows(path);
+  TrajectoryFile file;
+  file.trace.name = std::filesystem::path(path).stem().string();
+  file.trace.is_closed = false;
+  for (const auto& [name, value] : rows.parameters) {
+    const std::optional<int> k = unnamed_parameter(name);
+    if (k && *k > static_cast<int>(file.trace.parameters.size())) file.trace.parameters.resize(*k - 1, 0.0);
+    file.trace.parameters.push_back(value);
+  }
+  file.states = rows.states;
+  for (const RecordedRows& recorded : rows.segments) {
+    TraceSegment segment;
+    segment.times = recorded.times;
+    segment.states = recorded.states;
+    file.trace.segments.push_back(std::move(segment));
+  }
+  return file;
 }
 
 }  // namespace tchat

@@ -1,9 +1,4 @@
-/// Pictures of labelled orbits: phase portraits in the plane and in space, and time series in panels one below the
-/// other or in one.
-///
-/// Each orbit has a colour and a symbol; a stable one is solid, an unstable one dashed, an inadmissible one dotted, and
-/// the key says so. Jumps are thin pale lines, from a filled symbol (before) to an open one (after). An arrowhead shows
-/// the direction of time. Event surfaces are grey lines.
+/// Pictures of orbits: phase portraits and time series, of labels and of trajectories of simulations.
 #pragma once
 
 #include <functional>
@@ -15,6 +10,13 @@
 #include "plot/figure.hpp"
 
 namespace tchat {
+
+// Pictures of labelled orbits: phase portraits in the plane and in space, and time series in panels one below the
+// other or in one.
+//
+// Each orbit has a colour and a symbol; a stable one is solid, an unstable one dashed, an inadmissible one dotted, and
+// the key says so. Jumps are thin pale lines, from a filled symbol (before) to an open one (after). An arrowhead shows
+// the direction of time. Event surfaces are grey lines.
 
 struct OrbitFigureOptions {
   std::vector<std::string> states;      ///< names, element k - 1 of state k; U(k) for what is missing
@@ -73,5 +75,15 @@ void explain_dashes(Figure& figure, const std::vector<OrbitTrace>& orbits);
 
 /// Key entry of an event surface, the number-th in the picture (from 0).
 KeyEntry surface_entry(const std::string& name, std::size_t number);
+
+// NAME.trajectory of `tchat simulate`, or the table that `tchat orbit` prints, as an orbit that need not close.
+
+struct TrajectoryFile {
+  OrbitTrace trace;                 ///< named NAME; its parameters are those of the heading
+  std::vector<std::string> states;  ///< from the heading, blanks as underscores
+};
+
+/// Throws UserError with the line for what is no trajectory, or holds no rows.
+TrajectoryFile read_trajectory_file(const std::string& path);
 
 }  // namespace tchat

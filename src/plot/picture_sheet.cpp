@@ -1,7 +1,14 @@
 #include "plot/picture_sheet.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <unordered_set>
 
 #include "base/user_error.hpp"
 
@@ -91,6 +98,86 @@ SheetLayout lay_out(const Sheet& sheet) {
   lay_out_each(result.figures);
   result.font = result.figures.front().layout.font;
   return result;
+}
+
+namespace {
+
+constexpr double pixels_per_inch = 150.0;  // of a PDF: 1200 pixels become 8 inches
+constexpr double points_per_inch = 72.0;
+
+}  // namespace
+
+PictureFormat picture_format(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".png") return PictureFormat::png;
+  if (extension == ".svg") return PictureFormat::svg;
+  if (extension == ".pdf") return PictureFormat::pdf;
+  if (extension == ".html") return PictureFormat::html;
+  throw UserError(fmt::format("-o {}: {}; pictures are .png, .svg, .pdf or .html files, as in -o branch.png", path,
+                              extension.empty() ? "the name has no extension" : "no such form of picture"));
+}
+
+std::string window_terminal(const std::vector<std::string>& terminals) {
+  for (const char* name : {"qt", "wxt", "x11", "aqua", "windows"})
+    if (std::find(terminals.begin(), terminals.end(), name) != terminals.end()) return name;
+  return "";
+}
+
+TerminalUnits terminal_units(PictureFormat format, int width, double font) {
+  const double scale = width / 1200.0;
+  switch (format) {
+    case PictureFormat::svg:
+      return {1.0, 1.0 / (0.375 * font), scale};
+    case PictureFormat::pdf:
+      return {0.75 * points_per_inch / pixels_per_inch, 1.0 / 6.5, 0.55 * scale};
+    default:
+      return {0.75, 1.0 / 3.1, scale};
+  }
+}
+
+std::string terminal_line(PictureFormat format, const std::string& window, int width, int height, double font) {
+  const double size = font * terminal_units(format, width, font).font;
+  switch (format) {
+    case PictureFormat::png:
+      return fmt::format("set terminal pngcairo enhanced background '#ffffff' size {},{} font 'sans,{:.1f}'", width,
+                         height, size);
+    case PictureFormat::svg:
+      return fmt::format("set terminal svg standalone enhanced background '#ffffff' size {},{} font 'sans,{:.1f}'",
+                         width, height, size);
+    case PictureFormat::pdf:
+      return fmt::format("set terminal pdfcairo enhanced fontscale 1 size {:.3f}in,{:.3f}in font 'sans,{:.1f}'",
+                         width / pixels_per_inch, height / pixels_per_inch, size);
+    default:
+      return fmt::format("set terminal {} enhanced persist size {},{} font 'sans,{:.1f}'", window, width, height, size);
+  }
+}
+
+std::vector<std::size_t> thinned_indices(const std::vector<PicturePoint>& points, const PanelLayout& panel, double side,
+                                         std::size_t few) {
+  std::vector<std::size_t> kept;
+  std::unordered_set<std::uint64_t> taken;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const PicturePoint& point = points[k];
+    if (!std::isfinite(point.x) || !std::isfinite(point.y)) continue;
+    if (points.size() > few) {
+      const PicturePoint at = panel.on_paper(point);
+      if (!std::isfinite(at.x) || !std::isfinite(at.y) || !panel.frame.grown(side).contains(at)) continue;
+      const auto column = static_cast<std::uint64_t>((at.x + side) / side);
+      const auto row = static_cast<std::uint64_t>((at.y + side) / side);
+      if (!taken.insert((column << 32U) | row).second) continue;
+    }
+    kept.push_back(k);
+  }
+  return kept;
+}
+
+std::vector<PicturePoint> thinned_points(const std::vector<PicturePoint>& points, const PanelLayout& panel, double side,
+                                         std::size_t few) {
+  std::vector<PicturePoint> kept;
+  for (const std::size_t k : thinned_indices(points, panel, side, few)) kept.push_back(points[k]);
+  return kept;
 }
 
 }  // namespace tchat

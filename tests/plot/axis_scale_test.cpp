@@ -1,4 +1,4 @@
-#include "plot/axis_scale.hpp"
+#include "plot/figure.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -6,11 +6,10 @@
 #include <set>
 
 #include "base/user_error.hpp"
-#include "plot/branch_columns.hpp"
-#include "plot/branch_end.hpp"
-#include "plot/data_file.hpp"
+#include "plot/branch_quantity.hpp"
+#include "plot/figure.hpp"
 #include "plot/layout.hpp"
-#include "plot/picture_styles.hpp"
+#include "plot/underlay.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace tchat;

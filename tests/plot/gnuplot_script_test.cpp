@@ -6,7 +6,7 @@
 #include <set>
 
 #include "base/user_error.hpp"
-#include "plot/picture_styles.hpp"
+#include "plot/figure.hpp"
 
 using namespace tchat;
 

@@ -1,5 +1,5 @@
 // The key: columns as wide as their texts, nothing over anything else, nothing outside the picture.
-#include "plot/key_placement.hpp"
+#include "plot/layout.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -9,8 +9,8 @@
 
 #include "base/user_error.hpp"
 #include "plot/branch_figure.hpp"
-#include "plot/page_json.hpp"
-#include "plot/restart_command.hpp"
+#include "plot/page_branch.hpp"
+#include "plot/page_figure.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace tchat;

@@ -6,7 +6,6 @@
 
 #include "base/user_error.hpp"
 #include "plot/gnuplot_script.hpp"
-#include "plot/thinned_points.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

@@ -1,4 +1,4 @@
-#include "plot/smooth_line.hpp"
+#include "plot/branch_figure.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

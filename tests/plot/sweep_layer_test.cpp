@@ -1,5 +1,5 @@
 // What a sweep becomes in a picture: rows chosen, columns and expressions of them, dots and their colours, bars, maps.
-#include "plot/sweep_layer.hpp"
+#include "plot/underlay.hpp"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "base/user_error.hpp"
-#include "plot/colour_scale.hpp"
-#include "plot/sweep_colours.hpp"
+#include "plot/figure.hpp"
+#include "plot/sweep_columns.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace tchat;
