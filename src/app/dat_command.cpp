@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "app/problem_argument.hpp"
-#include "run/data_conversion.hpp"
+#include "run/data_start.hpp"
 
 namespace tchat {
 

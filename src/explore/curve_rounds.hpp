@@ -15,7 +15,7 @@
 #include "explore/curve_catalogue.hpp"
 #include "explore/curve_commands.hpp"
 #include "explore/explored_curves.hpp"
-#include "run/next_command.hpp"
+#include "run/run_remarks.hpp"
 
 namespace tchat {
 

@@ -20,7 +20,7 @@ struct SwitchPoint {
   int label = 0;
   std::string type;        ///< GR, PD, ...
   double parameter = 0.0;  ///< the value of the explored one
-  std::string command;     ///< run/next_command.hpp
+  std::string command;     ///< run/run_remarks.hpp
 };
 
 /// A labelled orbit of a branch, and a label of a known branch from which its orbits at the same value are corrected.

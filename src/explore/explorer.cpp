@@ -30,7 +30,7 @@
 #include "files/replaced_file.hpp"
 #include "files/solution_file_reader.hpp"
 #include "plugin/named_parameters.hpp"
-#include "run/next_command.hpp"
+#include "run/run_remarks.hpp"
 #include "settings/constants_file.hpp"
 #include "settings/point_type.hpp"
 #include "settings/settings_type.hpp"

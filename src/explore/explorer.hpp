@@ -1,5 +1,5 @@
 /// The whole diagram that other commands can reach: attractors of a sweep as starts, branches from them in both
-/// directions, and at every special point the command that most users give next (run/next_command.hpp), until nothing
+/// directions, and at every special point the command that most users give next (run/run_remarks.hpp), until nothing
 /// new is found.
 ///
 /// Work goes in rounds: all commands of a round are known when it begins, and what they found is looked at in their

@@ -3,8 +3,8 @@
 #include "kinds/families.hpp"
 #include "kinds/problem_types.hpp"
 #include "orbit/boundary_value_system.hpp"
+#include "run/branch_setup.hpp"
 #include "run/branch_switch.hpp"
-#include "run/problem_row.hpp"
 #include "settings/settings_type.hpp"
 
 namespace tchat {

@@ -5,7 +5,7 @@
 #include "base/user_error.hpp"
 #include "orbit/curve_conditions.hpp"
 #include "orbit/periodic_orbit_system.hpp"
-#include "run/start_selection.hpp"
+#include "run/orbit_start.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"
 

@@ -7,7 +7,7 @@
 #include "orbit/defining_system.hpp"
 #include "orbit/event_minima.hpp"
 #include "orbit/orbit.hpp"
-#include "run/start_selection.hpp"
+#include "run/orbit_start.hpp"
 
 namespace tchat {
 

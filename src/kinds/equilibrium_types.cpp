@@ -8,10 +8,10 @@
 #include "orbit/curve_conditions.hpp"
 #include "orbit/equilibrium_system.hpp"
 #include "orbit/orbit.hpp"
+#include "run/branch_setup.hpp"
 #include "run/branch_switch.hpp"
-#include "run/equilibrium_test_lists.hpp"
 #include "run/hopf_switch.hpp"
-#include "run/problem_row.hpp"
+#include "run/solver_settings.hpp"
 #include "stability/equilibrium_curve_tests.hpp"
 
 namespace tchat {

@@ -9,8 +9,8 @@
 #include "orbit/monitor_gradient.hpp"
 #include "orbit/periodic_orbit_system.hpp"
 #include "plugin/named_parameters.hpp"
-#include "run/run_monitors.hpp"
-#include "run/start_selection.hpp"
+#include "run/orbit_start.hpp"
+#include "run/solver_settings.hpp"
 #include "settings/settings_type.hpp"
 #include "stability/curve_tests.hpp"
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "run/problem_row.hpp"
+#include "run/branch_setup.hpp"
 
 namespace tchat {
 

@@ -8,7 +8,7 @@
 #include "orbit/bordered_problem.hpp"
 #include "orbit/periodic_orbit_system.hpp"
 #include "run/branch_setup.hpp"
-#include "run/start_selection.hpp"
+#include "run/orbit_start.hpp"
 #include "settings/point_type.hpp"
 #include "stability/floquet_multipliers.hpp"
 

@@ -2,8 +2,7 @@
 /// of orbit/torus_system.hpp (dissertation, 2.4, 3.3, 4.3). rho may be one of the free parameters.
 #include "kinds/families.hpp"
 #include "kinds/problem_types.hpp"
-#include "run/problem_row.hpp"
-#include "run/torus_problem.hpp"
+#include "run/branch_setup.hpp"
 #include "run/torus_start.hpp"
 
 namespace tchat {

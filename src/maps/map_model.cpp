@@ -24,7 +24,7 @@
 #include "plugin/named_parameters.hpp"
 #include "plugin/problem_setup.hpp"
 #include "resegment/empty_segments.hpp"
-#include "run/torus_problem.hpp"
+#include "run/torus_start.hpp"
 #include "settings/constants_file.hpp"
 #include "settings/family.hpp"
 #include "settings/settings_type.hpp"

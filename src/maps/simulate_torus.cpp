@@ -17,7 +17,7 @@
 #include "model/identity_jump.hpp"
 #include "plugin/named_parameters.hpp"
 #include "run/orbit_start.hpp"
-#include "run/unwatched_events.hpp"
+#include "run/run_remarks.hpp"
 #include "settings/constants_writer.hpp"
 #include "settings/recorded_problem.hpp"
 #include "settings/settings_type.hpp"

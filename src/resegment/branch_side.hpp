@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "model/hybrid_system.hpp"
-#include "run/start_selection.hpp"
+#include "run/orbit_start.hpp"
 #include "settings/run_settings.hpp"
 
 namespace tchat {

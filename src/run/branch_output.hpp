@@ -1,7 +1,4 @@
-/// What a run writes of its branch, one class for each format: the p-, q- and d-file and the table on the screen.
-///
-/// BranchWriter gives every point to all outputs in their order. A new format is a class of its own and a line in
-/// branch_outputs().
+/// What a run writes of its branch: the p-, q- and d-file and the table on the screen.
 #pragma once
 
 #include <memory>
@@ -15,6 +12,11 @@
 #include "files/run_files.hpp"
 
 namespace tchat {
+
+// What a run writes of its branch, one class for each format: the p-, q- and d-file and the table on the screen.
+//
+// BranchWriter gives every point to all outputs in their order. A new format is a class of its own and a line in
+// branch_outputs().
 
 /// The part of a branch that continues in one direction.
 struct BranchSection {
@@ -55,5 +57,14 @@ class BranchOutput {
 /// outlive the outputs.
 std::vector<std::unique_ptr<BranchOutput>> branch_outputs(const BranchSection& section, RunFiles& files,
                                                           std::ostream* screen, std::ostream* terminal);
+
+// The p-, q- and d-file of a run as outputs of its branch.
+
+std::unique_ptr<BranchOutput> point_file_output(const BranchSection& section, RunFiles& files);
+std::unique_ptr<BranchOutput> solution_file_output(const BranchSection& section, RunFiles& files);
+std::unique_ptr<BranchOutput> diagnostics_file_output(const BranchSection& section, RunFiles& files);
+
+/// `terminal` may be null: nothing shows where the branch is between the lines of the table.
+std::unique_ptr<BranchOutput> screen_output(const BranchSection& section, std::ostream& screen, std::ostream* terminal);
 
 }  // namespace tchat

@@ -1,20 +1,12 @@
 #include "run/branch_setup.hpp"
-#include "run/solver_settings.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
-#include "base/user_error.hpp"
 #include "files/labelled_solution.hpp"
-#include "orbit/bordered_problem.hpp"
 #include "orbit/mesh_adaptation.hpp"
-#include "run/run_monitors.hpp"
 #include "settings/family.hpp"
-#include "settings/point_type.hpp"
-#include "settings/problem_type.hpp"
-#include "settings/settings_type.hpp"
 
 namespace tchat {
 

@@ -1,6 +1,7 @@
-/// Hands a branch to its outputs as it grows: numbers and names its labels, computes the columns of its points.
+/// Hands the points of a branch to its outputs, and summarises the branch at the end of the run.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <ostream>
 #include <set>
@@ -13,6 +14,8 @@
 #include "run/branch_output.hpp"
 
 namespace tchat {
+
+// Hands a branch to its outputs as it grows: numbers and names its labels, computes the columns of its points.
 
 class BranchWriter final : public BranchSink {
  public:
@@ -76,5 +79,15 @@ class BranchWriter final : public BranchSink {
   bool last_stable_ = false;
   std::set<int> reported_user_functions_;
 };
+
+// The paragraph that ends a run: how many points, which are special, why it stopped, how accurate it is.
+
+/// The command that most users give next at a label, or "".
+using NextCommand = std::function<std::string(const BranchWriter::Labelled&)>;
+
+/// `output` is O of p.O; `parameter` the name of ICP(1). Several lines, each with its newline. The first label of each
+/// type is followed by its next command.
+std::string summary_text(const BranchSummary& summary, const std::vector<BranchWriter::Labelled>& labels,
+                         const std::string& parameter, const std::string& output, const NextCommand& next);
 
 }  // namespace tchat

@@ -17,7 +17,7 @@
 #include "orbit/mesh_adaptation.hpp"
 #include "orbit/periodic_orbit_system.hpp"
 #include "run/branch_writer.hpp"
-#include "run/test_lists.hpp"
+#include "run/solver_settings.hpp"
 #include "stability/impacting_orbits.hpp"
 #include "stability/langford.hpp"
 #include "stability/normal_form.hpp"

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "base/user_error.hpp"
-#include "run/branch_start.hpp"
+#include "run/first_correction.hpp"
 #include "support/branch_fixture.hpp"
 #include "support/linear_oscillator.hpp"
 

@@ -5,7 +5,7 @@
 #include "base/user_error.hpp"
 #include "files/labelled_solution.hpp"
 #include "orbit/orbit.hpp"
-#include "run/start_selection.hpp"
+#include "run/orbit_start.hpp"
 #include "settings/family.hpp"
 #include "settings/point_type.hpp"
 #include "settings/problem_type.hpp"

@@ -1,7 +1,7 @@
 // What a user must know of free parameters and their bounds before a run.
 #include <catch2/catch.hpp>
 
-#include "run/parameter_remarks.hpp"
+#include "run/run_remarks.hpp"
 #include "support/linear_oscillator.hpp"
 
 using namespace tchat;

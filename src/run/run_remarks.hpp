@@ -1,14 +1,40 @@
-/// The command that most users give next at a labelled solution.
+/// Remarks of a run to the user: on its free parameters, on events that no segment watches, and the next command.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "model/hybrid_system.hpp"
+#include "orbit/orbit.hpp"
+#include "run/orbit_start.hpp"
 #include "settings/point_type.hpp"
 #include "settings/run_settings.hpp"
 
 namespace tchat {
+
+// What a user has to know of the free parameters and their bounds before a branch is computed.
+
+/// RL0 and RL1 bound ICP(1): bounds that stand in the constants file for another parameter than the one that the
+/// command line has made the first. "" when there are none. `in_file` are the constants before the command line.
+std::string inherited_bounds(const HybridSystem& system, const RunSettings& in_file, const RunSettings& used,
+                             const std::vector<std::string>& overrides, const std::string& file);
+
+/// From a fold, period doubling or torus bifurcation with ISW = 1, parameters of ICP beyond the free one are mere
+/// columns, where the curve in two parameters may have been meant. "" when there are none.
+std::string idle_parameters(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start,
+                            std::size_t free_count);
+
+// Events that may come next by the problem's successors, but that no segment of the run watches or ends at.
+
+/// A warning with the cure, for no other message reports an orbit that continues through such an event. Events that are
+/// negative on their segment are left out, and segments that follow others than the successors allow. "" when there is
+/// no such event, or the problem has no successors. Starts of tori hold many returns of the signature, and each counts.
+std::string unwatched_events(const HybridSystem& system, const RunSettings& settings, const Orbit& start);
+
+/// Adds those events to the monitored ones of their segments (GCHGRZIND).
+void watch_possible_events(const HybridSystem& system, RunSettings& settings, const Orbit& start);
+
+// The command that most users give next at a labelled solution.
 
 /// A label that a run has written.
 struct NextStart {

@@ -1,20 +1,149 @@
-#include "run/next_command.hpp"
+#include "run/run_remarks.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
 
 #include "base/words.hpp"
 #include "files/run_files.hpp"
 #include "model/identity_jump.hpp"
 #include "model/parameter_vector.hpp"
+#include "model/relevant_events.hpp"
 #include "plugin/named_parameters.hpp"
 #include "plugin/plugin_build.hpp"
+#include "settings/constants_file.hpp"
 #include "settings/family.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"
 
 namespace tchat {
+
+std::string inherited_bounds(const HybridSystem& system, const RunSettings& in_file, const RunSettings& used,
+                             const std::vector<std::string>& overrides, const std::string& file) {
+  const int before = in_file.free_parameters.front();
+  const int now = used.free_parameters.front();
+  if (before == now) return "";
+  const RunSettings standard;
+  std::string list;
+  const auto add = [&](const char* keyword, double value, double standard_value) {
+    if (value != standard_value && !is_overridden(overrides, keyword))
+      list += fmt::format("{}{} = {:.10g}", list.empty() ? "" : ", ", keyword, value);
+  };
+  add("RL0", used.parameter_min, standard.parameter_min);
+  add("RL1", used.parameter_max, standard.parameter_max);
+  if (list.empty()) return "";
+  return fmt::format("{} of {} was given for {} and now bounds {}, the new ICP(1); give RL0 and RL1 with it", list,
+                     file, parameter_name(system, in_file, before), parameter_name(system, used, now));
+}
+
+std::string idle_parameters(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start,
+                            std::size_t free_count) {
+  static constexpr std::array curves{PointType::fold, PointType::period_doubling, PointType::torus,
+                                     PointType::equilibrium_fold, PointType::hopf};
+  const auto begins_curve = [](int type) {
+    return std::any_of(curves.begin(), curves.end(), [type](PointType t) { return type == static_cast<int>(t); });
+  };
+  if (problem_type(settings).facts().switches_branch || free_count != 1 ||
+      !has_two_parameter_curves(settings.problem_type) ||
+      std::none_of(start.types.begin(), start.types.end(), begins_curve))
+    return "";
+  std::string list;
+  std::size_t count = 0;
+  for (const int k : settings.free_parameters)
+    if (is_parameter(settings, k) && ++count > free_count)
+      list += fmt::format("{}{}", list.empty() ? "" : ", ", system.parameter_name(k));
+  if (list.empty()) return "";
+  return fmt::format(
+      "{} of ICP stays fixed with ISW = 1, a mere column; ISW=2 follows the curve of {} in two parameters", list,
+      type_name(start.type, start.kind));
+}
+
+namespace {
+
+std::set<int> watched(const RunSettings& settings) {
+  std::set<int> events;
+  for (const SegmentSettings& segment : settings.segments) {
+    events.insert(segment.index.event);
+    events.insert(segment.monitor.begin(), segment.monitor.end());
+  }
+  return events;
+}
+
+using SegmentsByEvent = std::map<int, std::set<int>>;  // segments from 1
+
+/// GCHGRZIND with what is missing besides what is there.
+std::string monitor_lists(const RunSettings& settings, const SegmentsByEvent& missing) {
+  std::string text;
+  for (std::size_t s = 0; s < settings.segments.size(); ++s) {
+    std::set<int> events(settings.segments[s].monitor.begin(), settings.segments[s].monitor.end());
+    for (const auto& [event, segments] : missing)
+      if (segments.contains(static_cast<int>(s) + 1)) events.insert(event);
+    text += fmt::format("{}[{}]", s == 0 ? "" : ", ", fmt::join(events, ", "));
+  }
+  return fmt::format("GCHGRZIND=[{}]", text);
+}
+
+/// Is the event's function negative somewhere on segment s, in any return of a torus? Then monitoring it would make
+/// every orbit inadmissible.
+bool is_negative(const HybridSystem& system, int event, const Orbit& x, int s, int segments_per_return) {
+  constexpr double rounding = 1e-6;
+  double least = 0.0;
+  double scale = 1.0;
+  for (; s < x.shape.segments; s += segments_per_return)
+    for (int k = 0; k < x.shape.nodes_of(s); ++k) {
+      const double h = system.event(event, x.node(s, k), x.par.data());
+      if (!(h >= least)) least = h;
+      scale = std::max(scale, std::abs(h));
+    }
+  return !(least >= -rounding * scale);
+}
+
+SegmentsByEvent missing_events(const HybridSystem& system, const RunSettings& settings, const Orbit& start) {
+  SegmentsByEvent missing;
+  if (!system.has_successors() || !signature_rules(settings).ends_in_events) return missing;
+  const std::set<int> seen = watched(settings);
+  const Signature signature = settings.signature();
+  const std::size_t m = signature.size();
+  for (std::size_t s = 0; s < m; ++s) {
+    const double* x = start.start(static_cast<int>(s));
+    const IndexVector& before = signature[(s + m - 1) % m];
+    const bool is_start = before.event == no_function;  // no event precedes an orbit without a section
+    const auto following = system.successors(is_start ? IndexVector{0, 0, 0} : before, x, start.par.data());
+    const int field = signature[s].field;
+    if (!following ||
+        std::none_of(following->begin(), following->end(), [field](const IndexVector& v) { return v.field == field; }))
+      continue;
+    for (const int event : relevant_events(system, *following, field, x, start.par.data()))
+      if (!seen.contains(event) && !is_negative(system, event, start, static_cast<int>(s), static_cast<int>(m)))
+        missing[event].insert(static_cast<int>(s) + 1);
+  }
+  return missing;
+}
+
+}  // namespace
+
+std::string unwatched_events(const HybridSystem& system, const RunSettings& settings, const Orbit& start) {
+  const SegmentsByEvent missing = missing_events(system, settings, start);
+  if (missing.empty()) return "";
+  std::string list;
+  for (const auto& [event, segments] : missing)
+    list += fmt::format("{}event {} ({}) on segment {}", list.empty() ? "" : ", ", event,
+                        system.function_name(FunctionKind::event, event), fmt::join(segments, ", "));
+  return fmt::format(
+      "{} may come next by the problem's successors, but is not monitored: orbits that it would end count as "
+      "admissible; {} monitors it (GCIPSI numbers the events of these lists)",
+      list, monitor_lists(settings, missing));
+}
+
+void watch_possible_events(const HybridSystem& system, RunSettings& settings, const Orbit& start) {
+  for (const auto& [event, segments] : missing_events(system, settings, start))
+    for (const int s : segments) settings.segments[static_cast<std::size_t>(s) - 1].monitor.push_back(event);
+}
 
 namespace {
 
