@@ -12,8 +12,8 @@
 
 #include "base/number.hpp"
 #include "base/user_error.hpp"
-#include "files/run_request.hpp"
-#include "files/writable_file.hpp"
+#include "files/replaced_file.hpp"
+#include "files/run_files.hpp"
 #include "kinds/conservation_check.hpp"
 #include "model/derivative_check.hpp"
 #include "model/parameter_vector.hpp"

@@ -15,7 +15,7 @@
 
 #include "app/commands.hpp"
 #include "base/user_error.hpp"
-#include "files/run_file_names.hpp"
+#include "files/auto_format.hpp"
 #include "files/solution_file_reader.hpp"
 #include "plugin/source_names.hpp"
 #include "settings/constants_table.hpp"

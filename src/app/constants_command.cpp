@@ -10,7 +10,7 @@
 
 #include "app/run_command.hpp"
 #include "base/warnings.hpp"
-#include "files/run_request.hpp"
+#include "files/run_files.hpp"
 #include "settings/constants_file.hpp"
 #include "settings/constants_guide.hpp"
 #include "settings/constants_writer.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "app/commands.hpp"
-#include "files/whole_file.hpp"
+#include "files/replaced_file.hpp"
 
 namespace tchat {
 

@@ -11,7 +11,7 @@
 
 #include "base/user_error.hpp"
 #include "base/warnings.hpp"
-#include "files/recorded_names.hpp"
+#include "files/recorded_labels.hpp"
 #include "files/solution_file_reader.hpp"
 #include "files/solution_tables.hpp"
 #include "settings/constant_value.hpp"

@@ -8,7 +8,7 @@
 
 #include "app/template_files.hpp"
 #include "base/user_error.hpp"
-#include "files/run_file_names.hpp"
+#include "files/auto_format.hpp"
 #include "plugin/compiler.hpp"
 #include "plugin/translation.hpp"
 

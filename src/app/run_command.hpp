@@ -4,7 +4,7 @@
 #include <CLI/App.hpp>
 #include <functional>
 
-#include "files/run_request.hpp"
+#include "files/run_files.hpp"
 
 namespace tchat {
 

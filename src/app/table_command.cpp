@@ -11,11 +11,10 @@
 #include "app/table_format_options.hpp"
 #include "base/user_error.hpp"
 #include "base/warnings.hpp"
+#include "files/auto_format.hpp"
 #include "files/branch_file.hpp"
-#include "files/branch_table.hpp"
-#include "files/point_type_table.hpp"
-#include "files/run_file_kind.hpp"
-#include "files/run_file_names.hpp"
+#include "files/recorded_labels.hpp"
+#include "files/solution_tables.hpp"
 #include "plot/branch_quantity.hpp"
 
 namespace tchat {

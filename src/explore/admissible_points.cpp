@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "files/diagnostics_file_reader.hpp"
+#include "files/diagnostics_file.hpp"
 
 namespace tchat {
 

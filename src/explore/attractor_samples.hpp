@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "explore/orbit_catalogue.hpp"
-#include "files/point_columns.hpp"
+#include "files/point_file.hpp"
 #include "model/hybrid_system.hpp"
 #include "simulate/sweep_file.hpp"
 

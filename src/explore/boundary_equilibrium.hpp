@@ -1,7 +1,7 @@
 /// Where an equilibrium meets an event surface (label BE), and the field on its other side is zero there as well.
 #pragma once
 
-#include "files/labelled_solution.hpp"
+#include "files/solution_file.hpp"
 #include "model/hybrid_system.hpp"
 
 namespace tchat {

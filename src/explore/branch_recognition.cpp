@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "files/parameter_values.hpp"
+#include "files/dat_file.hpp"
 #include "files/solution_file_reader.hpp"
 #include "model/parameter_vector.hpp"
 #include "motion/recurrence.hpp"

@@ -26,7 +26,7 @@
 #include "explore/exploration_commands.hpp"
 #include "explore/exploration_makefile.hpp"
 #include "explore/orbit_catalogue.hpp"
-#include "files/parameter_values.hpp"
+#include "files/dat_file.hpp"
 #include "files/replaced_file.hpp"
 #include "files/solution_file_reader.hpp"
 #include "plugin/named_parameters.hpp"

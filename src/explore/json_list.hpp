@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "files/table_format.hpp"
+#include "files/table_writer.hpp"
 
 namespace tchat {
 

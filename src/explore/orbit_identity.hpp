@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "explore/orbit_catalogue.hpp"
-#include "files/labelled_solution.hpp"
+#include "files/solution_file.hpp"
 
 namespace tchat {
 

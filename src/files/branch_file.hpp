@@ -1,8 +1,4 @@
-/// A p-file with what the q-file and d-file of the run add: names of UZ points, values of fixed parameters,
-/// multipliers, Newton iterations, and which points violate the model.
-///
-/// Points of the three files belong together by branch, point and label; the first number of each, ICP(1), tells files
-/// of another run apart.
+/// A p-file joined with the q-file and d-file of its run, and its points as one table for other programs.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,11 +6,18 @@
 #include <string>
 #include <vector>
 
-#include "files/diagnostics_file_reader.hpp"
-#include "files/labelled_solution.hpp"
+#include "files/diagnostics_file.hpp"
 #include "files/point_file_reader.hpp"
+#include "files/solution_file.hpp"
+#include "files/table_writer.hpp"
 
 namespace tchat {
+
+// A p-file with what the q-file and d-file of the run add: names of UZ points, values of fixed parameters,
+// multipliers, Newton iterations, and which points violate the model.
+//
+// Points of the three files belong together by branch, point and label; the first number of each, ICP(1), tells files
+// of another run apart.
 
 /// The states at which the segments of an orbit begin and end.
 struct SegmentEnds {
@@ -57,5 +60,20 @@ BranchFile read_branch_file(const std::string& path);
 /// The same with a q-file and a d-file that the user has named; "" for the one beside the p-file. Throws UserError when
 /// a named one cannot be read or is of another run.
 BranchFile read_branch_file(const std::string& path, const std::string& solutions, const std::string& diagnostics);
+
+// The points of a run as one table for other programs, one row a point, from p-, q- and d-file together.
+//
+//     section  branch  point  type  name  label  kind  stable  admissible
+//         section from 1; type in letters, name as IRS knows it (GR1), kind in words; point positive
+//     the columns of the p-file, by their names in full
+//     the other parameters: those of the run that do not change, and durations where they are known
+//     multiplier1_re  multiplier1_im  ...  newton_iterations
+//
+// Not known: stable along curves of special points; admissible, multipliers and iterations without a block of the
+// d-file; name and kind without a label of the q-file. 1e99, which stands for "not finite" in the files, is infinite
+// for a multiplier and otherwise not known.
+
+/// One row for each point; the multipliers are a list.
+void write_branch_table(TableWriter& out, const BranchFile& file);
 
 }  // namespace tchat

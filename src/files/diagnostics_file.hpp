@@ -1,22 +1,25 @@
-/// The d-file: what happened at each point, for people; AUTO's parser finds points, labels and multipliers in it.
-///
-/// A block belongs to one point and ends with a bar of 47 '='. Texts never hold times of day, durations of the
-/// computation or paths: files of two equal runs are equal.
-///
-/// A branch has thousands of ordinary points and some labels. The block of a label, and of the first point, has
-/// everything under its name; that of an ordinary point is short and written without an allocation.
+/// The d-file (fort.9): what happened at each point, with its multipliers; its writer and its reader.
 #pragma once
 
 #include <complex>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "files/point_columns.hpp"
 #include "files/point_file.hpp"
+#include "settings/normal_form_note.hpp"
 
 namespace tchat {
+
+// The d-file: what happened at each point, for people; AUTO's parser finds points, labels and multipliers in it.
+//
+// A block belongs to one point and ends with a bar of 47 '='. Texts never hold times of day, durations of the
+// computation or paths: files of two equal runs are equal.
+//
+// A branch has thousands of ordinary points and some labels. The block of a label, and of the first point, has
+// everything under its name; that of an ordinary point is short and written without an allocation.
 
 /// One Newton iteration; iteration 0 is the predictor and has no steps.
 struct NewtonLine {
@@ -76,5 +79,32 @@ std::string format_end_of_run();
 
 /// True when the text ends like a complete file: with our end of run, or AUTO's total time.
 bool ends_complete_run(std::string_view text);
+
+// Reads d-files (fort.9) for what the p-file does not hold: the multipliers of every point, the letters of its type,
+// whether the orbit is one of the model, which xi_n vanish there, and how many Newton iterations it took.
+//
+// Only what AUTO's own readers rely on is looked at: the bars of 47 `=` between blocks, the line below a
+// `BR PT TY LAB` heading, lines `Multiplier k re im`, `Eigenvalue k: re im` and `Iterations : n`; and of this program
+// the word `inadmissible` and notes, among them `xi_1 = 0, xi_2 = 0` and that of a normal form.
+
+struct DiagnosticPoint {
+  int branch = 0;
+  int point = 0;     ///< signed: negative when stable
+  std::string type;  ///< letters, "" for an ordinary point
+  int label = 0;
+  bool admissible = true;
+  std::vector<std::string> notes;                 ///< the first line of each, in their order
+  std::optional<NormalFormNote> normal_form;      ///< of its notes
+  std::vector<int> xi_zeros;                      ///< n of every xi_n = 0 in its notes
+  std::vector<std::complex<double>> multipliers;  ///< of an equilibrium the eigenvalues
+  std::optional<double> parameter;                ///< the first number after the label: ICP(1), to 6 digits
+  std::optional<int> iterations;                  ///< Newton iterations
+};
+
+/// The points in file order; lines that are not understood are skipped. Throws UserError when the file cannot be read.
+std::vector<DiagnosticPoint> read_diagnostics_file(const std::string& path);
+
+/// The same for text already read.
+std::vector<DiagnosticPoint> parse_diagnostics(std::string_view text);
 
 }  // namespace tchat

@@ -1,14 +1,19 @@
-/// Labelled solutions as orbits in physical time.
+/// Labelled solutions as lines in physical time, and how pictures draw them.
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <string>
 #include <vector>
 
-#include "files/labelled_solution.hpp"
-#include "files/line_kind.hpp"
+#include "files/diagnostics_file.hpp"
+#include "files/solution_file.hpp"
 
 namespace tchat {
+
+// Stability and admissibility of an orbit, or of a piece of a branch, as pictures show them.
+
+enum class LineKind { stable, unstable, inadmissible };
 
 /// One segment: states at times, counted from the start of segment 1.
 struct TraceSegment {
@@ -45,5 +50,37 @@ struct OrbitTrace {
 /// tells, or when the states are no whole number of segments.
 OrbitTrace orbit_trace(const LabelledSolution& solution, const std::string& name, int dimension,
                        const std::string& path);
+
+// Labels of invariant tori as pictures show them: the bundle of returns, and the closed curve on the section.
+
+/// How many segments one return has: from the constants of the run that wrote a q-file, r.NAME, or gc.NAME. Throws
+/// UserError where there are none, or the orbits of the label are no such returns.
+int segments_of_return(const LabelledSolution& solution, const std::string& solution_path);
+
+/// The returns from equal phases, those of the label and as many between them as make the torus seen. `dimension` as
+/// for orbit_trace().
+OrbitTrace torus_bundle(const LabelledSolution& solution, const std::string& name, int dimension,
+                        const std::string& path);
+
+/// u(phi), the trigonometric polynomial through the states in which the returns of the label begin, as one closed
+/// segment; and these states.
+OrbitTrace section_trace(const LabelledSolution& solution, const std::string& name, int dimension,
+                         const std::string& path);
+
+// How the orbits of labels are drawn: what the d-file, or else the p-file, says of them.
+
+/// Is a multiplier outside the unit circle, by more than 1e-4? At a located bifurcation PT has the sign of the point
+/// before, so the multipliers tell more; that of the bifurcation itself does not count.
+bool has_multiplier_outside(const DiagnosticPoint& point);
+
+/// Inadmissible as the file says; unstable with a multiplier outside.
+LineKind line_kind(const DiagnosticPoint& point);
+
+/// The labels of q.NAME that are unstable or inadmissible by d.NAME; without d-file unstable by the sign of PT in
+/// p.NAME. Empty when neither is there and can be read.
+std::map<int, LineKind> label_kinds(const std::string& solution_path);
+/// Of tori, whose trivial multiplier is known to the accuracy of the torus alone: stability by the sign of PT in the
+/// p-file, admissibility by the d-file.
+std::map<int, LineKind> torus_label_kinds(const std::string& solution_path);
 
 }  // namespace tchat

@@ -1,15 +1,81 @@
 #include "files/recorded_labels.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <string_view>
 
+#include "base/number.hpp"
+#include "base/text_file.hpp"
 #include "base/user_error.hpp"
-#include "files/diagnostics_file_reader.hpp"
+#include "base/words.hpp"
+#include "files/auto_format.hpp"
+#include "files/diagnostics_file.hpp"
 #include "files/point_file_reader.hpp"
-#include "files/run_file_names.hpp"
+#include "settings/constant_value.hpp"
 
 namespace tchat {
+
+namespace {
+
+bool is_identifier(const std::string& line) {
+  const auto words = split_words(line);
+  return (words.size() == 12 || words.size() == 16) &&
+         std::all_of(words.begin(), words.end(), [](std::string_view word) { return parse_integer(word).has_value(); });
+}
+
+RunFileKind kind_by_name(const std::string& name) {
+  const auto is_one_of = [&name](const char* prefixes, const char* fort) {
+    return name == fort ||
+           (name.size() > 1 && name[1] == '.' && std::string(prefixes).find(name[0]) != std::string::npos);
+  };
+  if (is_one_of("d", "fort.9")) return RunFileKind::diagnostics;
+  if (is_one_of("qs", "fort.8")) return RunFileKind::solutions;
+  return is_one_of("pb", "fort.7") ? RunFileKind::points : RunFileKind::other;
+}
+
+}  // namespace
+
+RunFileKind run_file_kind(const std::string& path) {
+  TextLines file(path, "a file of a run");
+  std::string line;
+  file.next(line);
+  if (is_identifier(line)) return RunFileKind::solutions;
+  const RunFileKind named = kind_by_name(std::filesystem::path(path).filename().string());
+  return named != RunFileKind::diagnostics && looks_like_point_file(line) ? RunFileKind::points : named;
+}
+
+namespace {
+
+constexpr int most_names = 1000;
+
+/// `most`: whatever number a file says.
+std::vector<std::string> list_of(const std::map<int, std::string>& names, const char* symbol, int most) {
+  std::vector<std::string> list;
+  const int last = names.empty() ? 0 : std::min(names.rbegin()->first, most);
+  for (int k = 1; k <= last; ++k) list.push_back(names.contains(k) ? names.at(k) : fmt::format("{}({})", symbol, k));
+  return list;
+}
+
+}  // namespace
+
+RecordedNames recorded_names(const std::string& solution_path) {
+  std::error_code error;
+  RecordedNames recorded;
+  const std::string path = sibling_path(solution_path, 'p');
+  if (path.empty() || !std::filesystem::is_regular_file(path, error)) return recorded;
+  try {
+    const PointFile file = read_point_file(path);
+    const PointSection& section = file.sections.front();
+    recorded.names.states = list_of(section.states, "U", most_names);
+    recorded.names.parameters = list_of(section.parameters, "PAR", most_names + section.layout.parameters());
+  } catch (const UserError&) {
+    recorded.warning = fmt::format("{} cannot be read: names of states and parameters are left out", path);
+  }
+  return recorded;
+}
 
 namespace {
 

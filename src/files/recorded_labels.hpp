@@ -1,4 +1,4 @@
-/// What the run that wrote a q-file has said of its labels, from the p-file and the d-file beside it.
+/// What the files of an earlier run record: their kind, the names of states and parameters, and notes on labels.
 #pragma once
 
 #include <map>
@@ -6,10 +6,31 @@
 #include <string>
 #include <vector>
 
+#include "files/point_file.hpp"
 #include "files/solution_file_reader.hpp"
 #include "settings/normal_form_note.hpp"
 
 namespace tchat {
+
+// Which of a run's files a file is.
+
+enum class RunFileKind { points, solutions, diagnostics, other };
+
+/// By the first line: of a q-file it holds 12 or 16 integers, of a p-file it is a header line or a point; otherwise by
+/// the name (d.NAME, q.NAME, p.NAME, fort.9 and the like). `other` when neither tells, and for a file that is missing.
+RunFileKind run_file_kind(const std::string& path);
+
+// Names of states and parameters as the run that wrote a q-file had them.
+
+struct RecordedNames {
+  ProblemNames names;   ///< empty without a p-file
+  std::string warning;  ///< when there is one that cannot be read
+};
+
+/// From the header of the p-file beside the q-file: q-files have no names.
+RecordedNames recorded_names(const std::string& solution_path);
+
+// What the run that wrote a q-file has said of its labels, from the p-file and the d-file beside it.
 
 struct RecordedLabel {
   std::optional<bool> stable;  ///< nothing where stability was not computed, or says nothing (curves of bifurcations)

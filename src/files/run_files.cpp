@@ -1,27 +1,131 @@
 #include "files/run_files.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <utility>
-#include <vector>
 
+#include "base/near_words.hpp"
+#include "base/number.hpp"
 #include "base/text_file.hpp"
 #include "base/user_error.hpp"
 #include "base/words.hpp"
+#include "files/auto_format.hpp"
 #include "files/diagnostics_file.hpp"
-#include "files/disk_sync.hpp"
-#include "files/output_lock.hpp"
+#include "files/solution_file.hpp"
 #include "files/solution_file_reader.hpp"
-#include "files/temporary_file.hpp"
-#include "files/writable_file.hpp"
+#include "settings/constant_value.hpp"
 
 namespace tchat {
 
 namespace {
 
 namespace fs = std::filesystem;
+
+struct PointKey {
+  int branch = 0;
+  int point = 0;  ///< with its sign
+  int label = 0;
+  bool operator==(const PointKey&) const = default;
+};
+
+/// BR, PT, LAB of the points of a p-file, a cut last line left out; nothing when it is no p-file.
+std::optional<std::vector<PointKey>> points_of(const std::string& path) {
+  std::vector<PointKey> points;
+  TextLines in(path, "points of branches");
+  for (std::string line; in.next(line) && !in.ended_within_line();) {
+    const auto words = split_words(line);
+    if (words.empty() || words[0] == "0") continue;
+    if (words.size() < 5) return std::nullopt;
+    const auto branch = parse_integer(words[0]), point = parse_integer(words[1]), label = parse_integer(words[3]);
+    if (!branch || !point || !label) return std::nullopt;
+    points.push_back({*branch, *point, *label});
+  }
+  return points;
+}
+
+/// A d-file up to its last closing line, that line included; nothing when it closes no run.
+std::optional<std::string> closed_part(const std::string& path) {
+  const std::string text = read_text_if_there(path, "diagnostics of a run").value_or("");
+  for (std::size_t end = text.size(); end > 0;) {
+    const std::size_t newline = text.rfind('\n', end - 1);
+    if (newline == std::string::npos) return std::nullopt;
+    const std::size_t before = newline == 0 ? std::string::npos : text.rfind('\n', newline - 1);
+    const std::size_t begin = before == std::string::npos ? 0 : before + 1;
+    if (ends_complete_run(std::string_view(text).substr(begin, newline + 1 - begin)))
+      return text.substr(0, newline + 1);
+    end = newline;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string output_path(char letter, const std::string& name) {
+  const fs::path path(name);
+  return (path.parent_path() / fmt::format("{}.{}", letter, path.filename().string())).string();
+}
+
+RunSetState run_set_state(const std::string& name, const std::string& suffix) {
+  const auto path = [&](char letter) { return output_path(letter, name) + suffix; };
+  const bool points_there = exists(path('p')), solutions_there = exists(path('q')), diagnostics = exists(path('d'));
+  if (!points_there && !solutions_there && !diagnostics) return RunSetState::absent;
+  if (!diagnostics) return RunSetState::foreign;
+  const auto points = points_of(path('p'));
+  auto labels = whole_solution_labels(path('q'));
+  if (!points || !labels) return RunSetState::foreign;
+  // A solution is written before its point, so that every label of a p-file is in its q-file.
+  std::sort(labels->begin(), labels->end());
+  for (const PointKey& point : *points)
+    if (point.label > 0 && !std::binary_search(labels->begin(), labels->end(), point.label))
+      return RunSetState::foreign;
+  const auto closed = closed_part(path('d'));
+  if (!closed) return RunSetState::interrupted;
+  const std::vector<DiagnosticPoint> noted = parse_diagnostics(*closed);
+  if (noted.empty() || !points_there || !solutions_there) return RunSetState::foreign;
+  const PointKey last{noted.back().branch, noted.back().point, noted.back().label};
+  const bool there = std::find(points->begin(), points->end(), last) != points->end();
+  return there ? RunSetState::complete : RunSetState::foreign;
+}
+
+void keep_run_set(const std::string& name) {
+  const RunSetState state = run_set_state(name);
+  std::string suffix = "~";
+  if (state != RunSetState::complete && run_set_state(name, "~") == RunSetState::complete) {
+    if (state == RunSetState::interrupted) return;
+    suffix = "~~";
+  }
+  std::error_code error;
+  // A set that comes from elsewhere need not be on the disk yet; the one whose place it takes is.
+  for (const char letter : {'p', 'q', 'r', 'd'}) sync_file(output_path(letter, name));
+  if (exists(output_path('d', name))) fs::remove(output_path('d', name) + suffix, error);
+  for (const char letter : {'p', 'q', 'r', 'd'}) {
+    const std::string path = output_path(letter, name);
+    if (exists(path))
+      keep_as(path, path + suffix);
+    else if (state == RunSetState::complete)
+      fs::remove(path + suffix, error);
+    if (error) throw ComputationError(fmt::format("{}{}: cannot be replaced ({})", path, suffix, error.message()));
+  }
+  sync_folder_of(name);  // before anything takes the first names
+}
+
+void replace_solution_file(const std::string& name, std::string_view solutions) {
+  const std::string path = output_path('q', name);
+  require_writable(path);
+  const auto lock = lock_output(name);
+  TemporaryFile file(path);
+  file.write(solutions);
+  file.close();
+  keep_run_set(name);
+  file.put_in_place();
+  sync_folder_of(name);
+}
+
+namespace {
 
 constexpr std::array<char, 4> letters{'p', 'q', 'd', 'r'};
 
@@ -187,6 +291,95 @@ void RunFiles::finish() {
   diagnostics_.file.sync();
   for (Growing* growing : {&points_, &solutions_, &diagnostics_}) growing->file.close();
   lock_.reset();
+}
+
+namespace {
+
+bool is_file(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored) && !fs::is_directory(path, ignored);
+}
+
+/// What -c could have meant: the constants that a run of this name has left, or constants files of like names.
+std::string constants_meant(const fs::path& path) {
+  if (const std::string used = output_path('r', path.string()); is_file(used))
+    return fmt::format("the constants of the run {} are in {}: -c {}", path.string(), used, used);
+  std::vector<std::string> names;
+  std::error_code error;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+    if (const std::string name = at->path().filename().string(); name.starts_with(constants_prefix))
+      names.push_back(name.substr(constants_prefix.size()));
+  const std::vector<std::string> near = near_words(path.filename().string(), names);
+  if (!near.empty()) return fmt::format("did you mean {}?", fmt::join(near, ", "));
+  return fmt::format(
+      "give its name with -c, let `tchat simulate {} --dat {}` write it with starting data, or write one "
+      "(`tchat constants` explains what is in it)",
+      path.filename().string(), path.filename().string());
+}
+
+/// NAME/NAME where NAME is a folder, as `tchat new NAME` makes it; else NAME.
+fs::path in_own_folder(const fs::path& path) {
+  std::error_code error;
+  return fs::is_directory(path, error) ? path / path.filename() : path;
+}
+
+/// Removes a leading gc. from the name of the file.
+fs::path without_prefix(const fs::path& path) {
+  const std::string file = path.filename().string();
+  return file.starts_with(constants_prefix) ? path.parent_path() / file.substr(constants_prefix.size()) : path;
+}
+
+}  // namespace
+
+std::string own_constants_path(const std::string& name) {
+  for (const std::string& path : {constants_file_of(name), constants_file_of(in_own_folder(name).string())})
+    if (is_file(path)) return path;
+  return "";
+}
+
+std::string constants_path(const std::string& c) {
+  const fs::path path(c);
+  if (const std::string own = own_constants_path(c); !own.empty()) return own;
+  if (is_file(path)) return path.string();
+  const fs::path name = without_prefix(path);
+  const std::string file = constants_file_of(name.string());
+  throw UserError(fmt::format("there is no constants file {}{}; {}", file, path == file ? "" : " or " + path.string(),
+                              constants_meant(name)));
+}
+
+std::string constants_of_run(const std::optional<std::string>& given, const std::string& solutions) {
+  if (given) return constants_path(*given);
+  const std::string used = sibling_path(solutions, 'r');
+  if (!used.empty() && is_file(used)) return used;
+  if (const std::string made = constants_file_of(run_path(solutions)); is_file(made)) return made;
+  throw UserError(fmt::format("there is no {} with the constants of the run that wrote {}; give them with -c C",
+                              used.empty() ? "r-file" : used, solutions));
+}
+
+std::string data_path(const std::string& d) {
+  const fs::path path(d);
+  const fs::path with_suffix = d + ".dat";
+  if (is_file(with_suffix)) return with_suffix.string();
+  if (const std::string own = in_own_folder(path).string() + ".dat"; is_file(own)) return own;
+  if (is_file(path)) return path.string();
+  throw UserError(
+      fmt::format("there is no starting data {} or {}; give its name with -d, or a q-file with -s and a "
+                  "label with IRS=",
+                  with_suffix.string(), path.string()));
+}
+
+std::string solution_path(const std::string& s) {
+  const std::string prefixed = output_path('q', s);
+  if (is_file(prefixed)) return prefixed;
+  if (is_file(s)) return s;
+  throw UserError(
+      fmt::format("there is no q-file {} to restart from; give the name of an earlier run's output with -s", prefixed));
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code error;
+  return fs::equivalent(a, b, error) && !error;
 }
 
 }  // namespace tchat

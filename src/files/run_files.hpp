@@ -1,23 +1,56 @@
-/// The four files of a run, p.O, q.O, d.O and r.O, opened together and usable at all times.
-///
-/// Nothing but the lock of the name is touched before open(). What was there is kept as files/run_set.hpp says. Blocks
-/// are gathered in memory and written together, some times a second: solutions, points, diagnostics, so that what a
-/// point names is there. Without finish() the files are those of an incomplete run; they still get what was gathered
-/// when the run ends by an exception, or when leave_process() ends it.
+/// The four files p.O, q.O, d.O and r.O of a run, written together and kept as a set, and the request that names them.
 #pragma once
 
 #include <chrono>
 #include <csignal>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "files/block_file.hpp"
-#include "files/run_set.hpp"
+#include "files/replaced_file.hpp"
 #include "plugin/exit_guard.hpp"
 #include "plugin/file_lock.hpp"
 
 namespace tchat {
+
+// The files p.O, q.O, d.O and r.O of one run as a set, and how a set is kept when a new one takes its place.
+//
+// At every instant, whatever is killed, a complete set that there was is complete as p.O, q.O, d.O or as p.O~, q.O~,
+// d.O~: the old set gets its second names while it still stands, its d-file last, and only then are its files replaced
+// one by one, the d-file first. A set whose d-file does not close a run is never taken for a complete one. The same
+// holds when the power fails: a set is on the disk before its d-file closes it, and its second names are there before
+// the first ones go.
+
+/// "p.O" in the folder of O: letter 'p', name "results/mems" -> "results/p.mems".
+std::string output_path(char letter, const std::string& name);
+
+enum class RunSetState {
+  absent,       ///< none of p, q, d
+  complete,     ///< holds a complete run: the d-file closes one, and p and q have its last point. More may follow
+  interrupted,  ///< a run that has not closed its d-file
+  foreign       ///< anything else, such as a q-file from elsewhere: no run of ours would leave these together
+};
+
+/// Of p.O, q.O, d.O with `suffix` after their names ("" or "~"). Reads the files, but not the numbers of solutions.
+RunSetState run_set_state(const std::string& name, const std::string& suffix = "");
+
+/// Before p.O, q.O, d.O or r.O is replaced: keeps what is there under second names, as p.O~ and so on. A set that is
+/// not complete never replaces a complete p.O~: an interrupted one is not kept then, a foreign one is kept as p.O~~.
+/// Throws ComputationError.
+void keep_run_set(const std::string& name);
+
+/// Writes q.O alone, as a start for runs, under the lock of the name; the set that it replaces a file of is kept.
+/// Throws UserError when that cannot be done there, ComputationError.
+void replace_solution_file(const std::string& name, std::string_view solutions);
+
+// The four files of a run, p.O, q.O, d.O and r.O, opened together and usable at all times.
+//
+// Nothing but the lock of the name is touched before open(). What was there is kept as keep_run_set() says. Blocks
+// are gathered in memory and written together, some times a second: solutions, points, diagnostics, so that what a
+// point names is there. Without finish() the files are those of an incomplete run; they still get what was gathered
+// when the run ends by an exception, or when leave_process() ends it.
 
 class RunFiles final : private LastAct {
  public:
@@ -87,5 +120,39 @@ class RunFiles final : private LastAct {
   std::chrono::steady_clock::time_point last_written_;
   volatile std::sig_atomic_t changing_ = 0;  // a signal handler may find the gathered texts in the middle of a change
 };
+
+// One `tchat run`: what the command line says, before any file is read.
+
+struct RunRequest {
+  std::string name;
+  std::optional<std::string> constants;  ///< -c
+  std::optional<std::string> problem;    ///< -p
+  std::optional<std::string> data;       ///< -d
+  std::optional<std::string> start;      ///< -s
+  std::optional<std::string> output;     ///< -o
+  bool quiet = false;
+  bool both_directions = false;
+  bool append = false;
+  bool clip = false;                   ///< end on the bounds RL0, RL1, A0, A1
+  bool strict = false;                 ///< a branch that ends by MX is a failure
+  int threads = 1;                     ///< -j
+  std::vector<std::string> overrides;  ///< KEY=VALUE
+};
+
+/// gc.C in the folder of C, or C itself when only that exists. Throws UserError when neither does.
+/// Where C is a folder, gc.C in it counts too: `tchat new` makes NAME/gc.NAME.
+std::string constants_path(const std::string& c);
+/// gc.NAME, or NAME/gc.NAME where NAME is a folder; empty when there is neither.
+std::string own_constants_path(const std::string& name);
+/// The constants of the run that wrote the q-file `solutions`: `given` like constants_path(), else the r-file beside
+/// it, or gc.NAME of `tchat resegment`. Throws UserError when there is none.
+std::string constants_of_run(const std::optional<std::string>& given, const std::string& solutions);
+/// D.dat, D/D.dat, or D itself when only that exists. Throws UserError when neither does.
+std::string data_path(const std::string& d);
+/// q.S in the folder of S, or S itself when only that exists. Throws UserError when neither does.
+std::string solution_path(const std::string& s);
+
+/// Both exist and are one file, whatever their paths.
+bool same_file(const std::string& a, const std::string& b);
 
 }  // namespace tchat

@@ -1,31 +1,38 @@
-/// What a simulation writes: O.trajectory, the states along every segment, and O.events, what happened at its end and
-/// near-grazing contacts on the way.
-///
-/// O.trajectory, after a '#' heading, an empty line between segments:
-///
-///     segment  i  j  k  t  U(1) .. U(n)              (i, j, k) ended the segment; j = k = 0: nothing has
-///
-/// O.events, one line for each:
-///
-///     segment  i  j  k  t  h  h_x f  U(1) .. U(n) before  U(1) .. U(n) after the jump  what
-///
-/// what: `event`; `event+2` when event function 2 came to zero at the same time; `contact`, a minimum of h near zero;
-/// `violation`, a monitored h that fell below zero; `beyond`, a wall already behind the start of a segment. Where
-/// nothing ended the segment k = 0, and the state after is the state before.
+/// The files of a simulation: writers of O.trajectory and O.events, and the reader of trajectories.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <deque>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "files/replaced_file.hpp"
 #include "model/hybrid_system.hpp"
+#include "model/index_vector.hpp"
 #include "motion/hybrid_simulation.hpp"
 #include "plugin/file_lock.hpp"
 
 namespace tchat {
+
+// What a simulation writes: O.trajectory, the states along every segment, and O.events, what happened at its end and
+// near-grazing contacts on the way.
+//
+// O.trajectory, after a '#' heading, an empty line between segments:
+//
+//     segment  i  j  k  t  U(1) .. U(n)              (i, j, k) ended the segment; j = k = 0: nothing has
+//
+// O.events, one line for each:
+//
+//     segment  i  j  k  t  h  h_x f  U(1) .. U(n) before  U(1) .. U(n) after the jump  what
+//
+// what: `event`; `event+2` when event function 2 came to zero at the same time; `contact`, a minimum of h near zero;
+// `violation`, a monitored h that fell below zero; `beyond`, a wall already behind the start of a segment. Where
+// nothing ended the segment k = 0, and the state after is the state before.
 
 class SimulationFiles {
  public:
@@ -63,5 +70,29 @@ class SimulationFiles {
   long segments_ = 0, dropped_ = 0;
   bool is_first_ = true;
 };
+
+// The rows of NAME.trajectory (`tchat simulate`), or of the table that `tchat orbit` prints, segment by segment.
+
+/// A part of a motion between two events.
+struct RecordedRows {
+  IndexVector index{no_function, no_function, no_function};  ///< what ended it; all zero where the table does not say
+  std::vector<double> times;
+  Eigen::MatrixXd states;  ///< n x times.size()
+};
+
+struct TrajectoryRows {
+  std::vector<std::string> states;                         ///< names from the heading, blanks as underscores
+  std::vector<std::pair<std::string, double>> parameters;  ///< of the heading: all of a simulation, PAR(1) first
+  std::vector<RecordedRows> segments;
+};
+
+/// k of "PAR(k)", the name of a parameter that has none.
+std::optional<int> unnamed_parameter(const std::string& name);
+
+/// Does the heading of the file name such columns?
+bool looks_like_trajectory(const std::string& path);
+
+/// Throws UserError with the line for what is no trajectory, or holds no rows.
+TrajectoryRows read_trajectory_rows(const std::string& path);
 
 }  // namespace tchat

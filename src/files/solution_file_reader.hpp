@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "files/labelled_solution.hpp"
+#include "files/solution_file.hpp"
 #include "settings/point_type.hpp"
 #include "settings/run_settings.hpp"
 

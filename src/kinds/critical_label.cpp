@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <optional>
 
-#include "files/labelled_solution.hpp"
+#include "files/solution_file.hpp"
 #include "settings/point_type.hpp"
 #include "settings/problem_type.hpp"
 

@@ -4,7 +4,7 @@
 #include <complex>
 #include <vector>
 
-#include "files/labelled_solution.hpp"
+#include "files/solution_file.hpp"
 
 namespace tchat {
 

@@ -2,8 +2,7 @@
 #include <fmt/format.h>
 
 #include "base/user_error.hpp"
-#include "files/orbit_stability.hpp"
-#include "files/torus_trace.hpp"
+#include "files/orbit_trace.hpp"
 #include "kinds/families.hpp"
 #include "kinds/segment_family.hpp"
 #include "kinds/torus_check.hpp"

@@ -1,7 +1,7 @@
 /// What families of segments share: their sizes, how they start and restart, and the words of summaries.
 #pragma once
 
-#include "files/labelled_solution.hpp"
+#include "files/solution_file.hpp"
 #include "run/data_start.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"

@@ -2,9 +2,8 @@
 #include <fmt/format.h>
 
 #include "base/user_error.hpp"
-#include "files/labelled_solution.hpp"
-#include "files/orbit_stability.hpp"
 #include "files/orbit_trace.hpp"
+#include "files/solution_file.hpp"
 #include "kinds/orbit_check.hpp"
 #include "settings/family.hpp"
 #include "settings/problem_type.hpp"

@@ -4,8 +4,8 @@
 
 #include "base/user_error.hpp"
 #include "base/warnings.hpp"
-#include "files/run_file_names.hpp"
-#include "files/run_request.hpp"
+#include "files/auto_format.hpp"
+#include "files/run_files.hpp"
 #include "files/solution_file_reader.hpp"
 #include "maps/grazing_report.hpp"
 #include "maps/grazing_source.hpp"

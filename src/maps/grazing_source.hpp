@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "files/labelled_solution.hpp"
+#include "files/solution_file.hpp"
 #include "maps/cross_section.hpp"
 #include "maps/grazing_orbit.hpp"
 #include "maps/grazing_request.hpp"

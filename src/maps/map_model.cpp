@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/user_error.hpp"
-#include "files/run_request.hpp"
+#include "files/run_files.hpp"
 #include "files/solution_file_reader.hpp"
 #include "maps/circle.hpp"
 #include "maps/grazing_orbit.hpp"

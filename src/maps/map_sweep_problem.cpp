@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/user_error.hpp"
-#include "files/parameter_values.hpp"
-#include "files/point_columns.hpp"
+#include "files/dat_file.hpp"
+#include "files/point_file.hpp"
 #include "maps/map_model.hpp"
 #include "maps/map_sampler.hpp"
 #include "simulate/loaded_problem.hpp"

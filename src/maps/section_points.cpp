@@ -11,7 +11,7 @@
 #include "base/text_file.hpp"
 #include "base/user_error.hpp"
 #include "base/words.hpp"
-#include "files/point_columns.hpp"
+#include "files/point_file.hpp"
 #include "simulate/sweep_file.hpp"
 
 namespace tchat {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "files/labelled_solution.hpp"
+#include "files/solution_file.hpp"
 #include "maps/invariant_curve.hpp"
 #include "model/hybrid_system.hpp"
 #include "orbit/orbit.hpp"

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "base/user_error.hpp"
-#include "files/labelled_solution.hpp"
-#include "files/run_file_names.hpp"
+#include "files/auto_format.hpp"
+#include "files/solution_file.hpp"
 #include "plot/branch_quantity.hpp"
 #include "settings/constants_file.hpp"
 #include "settings/family.hpp"

@@ -12,7 +12,7 @@
 #include "base/number.hpp"
 #include "base/user_error.hpp"
 #include "base/words.hpp"
-#include "files/table_format.hpp"
+#include "files/table_writer.hpp"
 #include "plot/column_expression.hpp"
 #include "settings/constant_value.hpp"
 

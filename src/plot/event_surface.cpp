@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "base/user_error.hpp"
-#include "files/recorded_names.hpp"
-#include "files/run_file_names.hpp"
+#include "files/auto_format.hpp"
+#include "files/recorded_labels.hpp"
 #include "model/event_at.hpp"
 #include "plot/gnuplot.hpp"
 #include "plugin/plugin_build.hpp"

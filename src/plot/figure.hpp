@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "files/line_kind.hpp"
+#include "files/orbit_trace.hpp"
 #include "plot/label_text.hpp"
 #include "settings/point_type.hpp"
 

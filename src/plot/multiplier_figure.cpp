@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "base/user_error.hpp"
-#include "files/orbit_stability.hpp"
+#include "files/orbit_trace.hpp"
 #include "plot/figure.hpp"
 
 namespace tchat {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "files/diagnostics_file_reader.hpp"
+#include "files/diagnostics_file.hpp"
 #include "plot/figure.hpp"
 
 namespace tchat {

@@ -12,7 +12,7 @@
 
 #include "base/user_error.hpp"
 #include "base/words.hpp"
-#include "files/trajectory_rows.hpp"
+#include "files/simulation_files.hpp"
 #include "model/parameter_vector.hpp"
 #include "plot/event_surface.hpp"
 #include "settings/constant_value.hpp"

@@ -12,11 +12,10 @@
 
 #include "base/user_error.hpp"
 #include "base/words.hpp"
+#include "files/auto_format.hpp"
 #include "files/orbit_trace.hpp"
 #include "files/recorded_labels.hpp"
-#include "files/run_file_names.hpp"
-#include "files/run_request.hpp"
-#include "files/run_set.hpp"
+#include "files/run_files.hpp"
 #include "files/solution_file_reader.hpp"
 #include "plot/label_text.hpp"
 #include "plot/page_figure.hpp"

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "base/user_error.hpp"
-#include "files/table_format.hpp"
+#include "files/table_writer.hpp"
 #include "plot/figure.hpp"
 
 namespace tchat {

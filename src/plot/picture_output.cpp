@@ -9,7 +9,7 @@
 
 #include "base/text_file.hpp"
 #include "base/user_error.hpp"
-#include "files/temporary_file.hpp"
+#include "files/replaced_file.hpp"
 #include "plot/gnuplot.hpp"
 #include "plot/gnuplot_script.hpp"
 

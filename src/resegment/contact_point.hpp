@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "files/labelled_solution.hpp"
+#include "files/solution_file.hpp"
 #include "model/hybrid_system.hpp"
 #include "orbit/orbit.hpp"
 #include "settings/run_settings.hpp"

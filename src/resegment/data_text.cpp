@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "files/parameter_values.hpp"
+#include "files/dat_file.hpp"
 #include "run/orbit_start.hpp"
 
 namespace tchat {

@@ -2,7 +2,7 @@
 /// 152): the orbits stay what they are, the constants ask for the contact and free one parameter more.
 #pragma once
 
-#include "files/labelled_solution.hpp"
+#include "files/solution_file.hpp"
 #include "model/hybrid_system.hpp"
 #include "settings/run_settings.hpp"
 

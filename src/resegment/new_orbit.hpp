@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "files/labelled_solution.hpp"
+#include "files/solution_file.hpp"
 #include "resegment/branch_side.hpp"
 #include "resegment/new_settings.hpp"
 #include "resegment/resegment.hpp"

@@ -8,13 +8,11 @@
 #include <filesystem>
 
 #include "base/user_error.hpp"
-#include "files/labelled_solution.hpp"
-#include "files/run_file_names.hpp"
+#include "files/auto_format.hpp"
+#include "files/replaced_file.hpp"
 #include "files/run_files.hpp"
-#include "files/run_request.hpp"
 #include "files/solution_file.hpp"
 #include "files/solution_file_reader.hpp"
-#include "files/whole_file.hpp"
 #include "plugin/named_parameters.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "files/labelled_solution.hpp"
+#include "files/solution_file.hpp"
 #include "model/hybrid_system.hpp"
 #include "settings/run_settings.hpp"
 

@@ -6,10 +6,9 @@
 #include <utility>
 
 #include "base/progress_line.hpp"
+#include "files/auto_format.hpp"
 #include "files/diagnostics_file.hpp"
-#include "files/labelled_solution.hpp"
-#include "files/number_format.hpp"
-#include "files/point_table.hpp"
+#include "files/point_file.hpp"
 #include "files/solution_file.hpp"
 #include "run/orbit_start.hpp"
 #include "settings/family.hpp"

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "continuation/branch.hpp"
-#include "files/point_columns.hpp"
 #include "files/point_file.hpp"
 #include "files/run_files.hpp"
 

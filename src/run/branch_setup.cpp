@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "files/labelled_solution.hpp"
+#include "files/solution_file.hpp"
 #include "orbit/mesh_adaptation.hpp"
 #include "settings/family.hpp"
 

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "base/user_error.hpp"
-#include "files/labelled_solution.hpp"
+#include "files/solution_file.hpp"
 #include "orbit/curve_conditions.hpp"
 #include "settings/family.hpp"
 #include "settings/point_type.hpp"

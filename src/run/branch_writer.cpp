@@ -10,8 +10,8 @@
 
 #include "base/folded.hpp"
 #include "continuation/solution_measure.hpp"
-#include "files/labelled_solution.hpp"
-#include "files/number_format.hpp"
+#include "files/auto_format.hpp"
+#include "files/solution_file.hpp"
 #include "model/parameter_vector.hpp"
 #include "run/solver_settings.hpp"
 #include "settings/family.hpp"

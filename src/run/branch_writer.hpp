@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "continuation/branch.hpp"
-#include "files/point_table.hpp"
+#include "files/point_file.hpp"
 #include "files/run_files.hpp"
 #include "run/branch_output.hpp"
 

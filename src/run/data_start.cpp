@@ -8,11 +8,10 @@
 #include <optional>
 
 #include "base/user_error.hpp"
-#include "files/orbit_parts.hpp"
-#include "files/parameter_values.hpp"
-#include "files/run_set.hpp"
+#include "files/dat_file.hpp"
+#include "files/run_files.hpp"
+#include "files/simulation_files.hpp"
 #include "files/solution_file.hpp"
-#include "files/trajectory_rows.hpp"
 #include "model/parameter_vector.hpp"
 #include "plugin/named_parameters.hpp"
 #include "plugin/plugin_build.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "files/dat_file.hpp"
-#include "files/run_request.hpp"
+#include "files/run_files.hpp"
 #include "run/orbit_start.hpp"
 #include "settings/run_settings.hpp"
 

@@ -12,7 +12,7 @@
 #include "base/user_error.hpp"
 #include "continuation/branch_analysis.hpp"
 #include "continuation/path_follower.hpp"
-#include "files/labelled_solution.hpp"
+#include "files/solution_file.hpp"
 #include "model/undefined_value.hpp"
 #include "orbit/defining_system.hpp"
 #include "orbit/mesh_adaptation.hpp"

@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "base/user_error.hpp"
-#include "files/parameter_values.hpp"
-#include "files/run_set.hpp"
+#include "files/dat_file.hpp"
+#include "files/replaced_file.hpp"
+#include "files/run_files.hpp"
 #include "files/solution_file_reader.hpp"
-#include "files/writable_file.hpp"
 #include "orbit/mesh_adaptation.hpp"
 #include "settings/constants_table.hpp"
 #include "settings/family.hpp"

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "files/dat_file.hpp"
-#include "files/labelled_solution.hpp"
-#include "files/run_request.hpp"
+#include "files/run_files.hpp"
+#include "files/solution_file.hpp"
 #include "model/hybrid_system.hpp"
 #include "orbit/orbit.hpp"
 #include "settings/run_settings.hpp"

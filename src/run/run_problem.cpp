@@ -12,7 +12,7 @@
 #include "base/user_error.hpp"
 #include "base/warnings.hpp"
 #include "continuation/continuation_run.hpp"
-#include "files/labelled_solution.hpp"
+#include "files/solution_file.hpp"
 #include "plugin/named_parameters.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"

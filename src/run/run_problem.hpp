@@ -4,7 +4,7 @@
 #include <functional>
 #include <ostream>
 
-#include "files/run_request.hpp"
+#include "files/run_files.hpp"
 
 namespace tchat {
 

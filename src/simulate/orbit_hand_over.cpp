@@ -7,7 +7,7 @@
 #include <optional>
 #include <set>
 
-#include "files/parameter_values.hpp"
+#include "files/dat_file.hpp"
 #include "model/identity_jump.hpp"
 #include "model/parameter_vector.hpp"
 #include "settings/problem_type.hpp"

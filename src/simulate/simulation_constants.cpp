@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/user_error.hpp"
-#include "files/run_request.hpp"
+#include "files/run_files.hpp"
 #include "model/index_vector.hpp"
 #include "motion/mode_rule.hpp"
 #include "plugin/problem_setup.hpp"

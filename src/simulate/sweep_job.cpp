@@ -15,9 +15,7 @@
 #include "base/number.hpp"
 #include "base/progress_line.hpp"
 #include "base/user_error.hpp"
-#include "files/output_lock.hpp"
 #include "files/replaced_file.hpp"
-#include "files/writable_file.hpp"
 #include "simulate/attractor_numbering.hpp"
 #include "simulate/sweep_workers.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "base/number.hpp"
 #include "base/user_error.hpp"
-#include "files/point_columns.hpp"
+#include "files/point_file.hpp"
 #include "orbit/quantity.hpp"
 #include "simulate/attractor_numbering.hpp"
 #include "simulate/loaded_problem.hpp"

@@ -1,4 +1,4 @@
-#include "files/block_file.hpp"
+#include "files/replaced_file.hpp"
 
 #include <catch2/catch.hpp>
 #include <filesystem>

@@ -1,5 +1,5 @@
 // Tables for other programs: what CSV and JSON have to be, whatever names and numbers a run has.
-#include "files/branch_table.hpp"
+#include "files/branch_file.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <sstream>
 
-#include "files/table_format.hpp"
+#include "files/table_writer.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace tchat;

@@ -1,5 +1,5 @@
 // d-files: multipliers before or after their point, letters of types, the word inadmissible.
-#include "files/diagnostics_file_reader.hpp"
+#include "files/diagnostics_file.hpp"
 
 #include <catch2/catch.hpp>
 

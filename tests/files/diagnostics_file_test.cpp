@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "files/diagnostics_file_reader.hpp"
-
 using namespace tchat;
 using Catch::Matchers::Contains;
 

@@ -1,4 +1,4 @@
-#include "files/number_format.hpp"
+#include "files/auto_format.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

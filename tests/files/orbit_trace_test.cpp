@@ -2,7 +2,6 @@
 #include <catch2/catch.hpp>
 
 #include "base/user_error.hpp"
-#include "files/orbit_stability.hpp"
 #include "files/orbit_trace.hpp"
 #include "model/parameter_vector.hpp"
 #include "support/temporary_folder.hpp"

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "base/user_error.hpp"
-#include "files/parameter_values.hpp"
+#include "files/dat_file.hpp"
 #include "plugin/named_parameters.hpp"
 #include "plugin/problem_setup.hpp"
 #include "run/solver_settings.hpp"

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "base/user_error.hpp"
-#include "files/run_request.hpp"
+#include "files/run_files.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace tchat;

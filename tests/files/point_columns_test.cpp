@@ -1,4 +1,4 @@
-#include "files/point_columns.hpp"
+#include "files/point_file.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>

@@ -6,8 +6,6 @@
 
 #include "base/user_error.hpp"
 #include "files/file_size_limit.hpp"
-#include "files/temporary_file.hpp"
-#include "files/whole_file.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace tchat;

@@ -1,4 +1,4 @@
-#include "files/run_file_names.hpp"
+#include "files/auto_format.hpp"
 
 #include <catch2/catch.hpp>
 

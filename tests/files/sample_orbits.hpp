@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "files/labelled_solution.hpp"
+#include "files/solution_file.hpp"
 
 namespace test_support {
 

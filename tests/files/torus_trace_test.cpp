@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/user_error.hpp"
-#include "files/torus_trace.hpp"
+#include "files/orbit_trace.hpp"
 #include "model/parameter_vector.hpp"
 #include "settings/problem_id.hpp"
 #include "support/temporary_folder.hpp"

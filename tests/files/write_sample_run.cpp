@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "files/diagnostics_file.hpp"
-#include "files/point_columns.hpp"
 #include "files/point_file.hpp"
 #include "files/run_files.hpp"
 #include "files/sample_orbits.hpp"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "files/diagnostics_file_reader.hpp"
+#include "files/diagnostics_file.hpp"
 #include "fuzz_target.hpp"
 
 using namespace tchat;

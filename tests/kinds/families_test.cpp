@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "base/user_error.hpp"
-#include "files/labelled_solution.hpp"
+#include "files/solution_file.hpp"
 #include "orbit/orbit.hpp"
 #include "run/orbit_start.hpp"
 #include "settings/family.hpp"

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "base/user_error.hpp"
-#include "files/orbit_stability.hpp"
+#include "files/orbit_trace.hpp"
 #include "plot/multiplier_figure.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -1,5 +1,5 @@
 #include "settings/point_type.hpp"
-#include "files/labelled_solution.hpp"
+#include "files/solution_file.hpp"
 
 #include <catch2/catch.hpp>
 
