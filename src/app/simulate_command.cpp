@@ -10,7 +10,7 @@
 #include "app/problem_argument.hpp"
 #include "app/simulation_options.hpp"
 #include "base/user_error.hpp"
-#include "maps/simulate_torus.hpp"
+#include "maps/simulated_torus.hpp"
 #include "simulate/simulate_problem.hpp"
 
 namespace tchat {

@@ -2,14 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
 #include "base/user_error.hpp"
-#include "maps/local_flow.hpp"
-#include "maps/taylor_coefficients.hpp"
+#include "linear/dense_matrix.hpp"
 #include "model/event_at.hpp"
 
 namespace tchat {
@@ -17,8 +18,66 @@ namespace tchat {
 namespace {
 
 using Eigen::MatrixXd;
-using Eigen::RowVectorXd;
 using Eigen::VectorXd;
+
+constexpr int points = 12;
+constexpr int sizes = 14;
+
+/// Chebyshev points of [-1, 1], and the matrix that makes coefficients of powers of values there.
+struct UnitInterpolation {
+  VectorXd nodes = VectorXd(points);
+  MatrixXd to_coefficients;
+
+  UnitInterpolation() {
+    MatrixXd powers(points, points);
+    for (int i = 0; i < points; ++i) {
+      nodes(i) = std::cos((2 * i + 1) * std::numbers::pi / (2 * points));
+      powers(i, 0) = 1.0;
+      for (int k = 1; k < points; ++k) powers(i, k) = powers(i, k - 1) * nodes(i);
+    }
+    to_coefficients = solve(powers, MatrixXd::Identity(points, points));
+  }
+};
+
+std::optional<MatrixXd> coefficients(const std::function<VectorXd(double)>& function, double size, int count,
+                                     const UnitInterpolation& unit) {
+  MatrixXd values;
+  for (int i = 0; i < points; ++i) {
+    const VectorXd value = function(size * unit.nodes(i));
+    if (!value.allFinite()) return std::nullopt;
+    if (i == 0) values.resize(value.size(), points);
+    values.col(i) = value;
+  }
+  MatrixXd result = values * unit.to_coefficients.topRows(count).transpose();
+  double power = 1.0;
+  for (int k = 0; k < count; ++k, power *= size) result.col(k) /= power;
+  return result;
+}
+
+}  // namespace
+
+TaylorCoefficients taylor_coefficients(const std::function<VectorXd(double)>& function, double first_size, int count) {
+  const UnitInterpolation unit;
+  TaylorCoefficients best{{}, VectorXd::Constant(count, INFINITY)};
+  std::optional<MatrixXd> before;
+  double size = first_size;
+  for (int trial = 0; trial < sizes; ++trial, size *= 0.5) {
+    std::optional<MatrixXd> now = coefficients(function, size, count, unit);
+    if (now && best.columns.size() == 0) best.columns = MatrixXd::Constant(now->rows(), count, NAN);
+    for (int k = 0; now && before && k < count; ++k) {
+      const double difference = (now->col(k) - before->col(k)).lpNorm<Eigen::Infinity>();
+      if (!(difference < best.errors(k))) continue;
+      best.errors(k) = difference;
+      best.columns.col(k) = now->col(k);
+    }
+    before = std::move(now);
+  }
+  return best;
+}
+
+namespace {
+
+using Eigen::RowVectorXd;
 
 VectorXd no_value(Eigen::Index n) { return VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN()); }
 
@@ -249,6 +308,80 @@ double DiscontinuityMap::penetration_of_deviation(const VectorXd& d) const {
 
 VectorXd DiscontinuityMap::expanded_deviation(const VectorXd& d, double y, MapOrder order) const {
   return p_->expanded(d, VectorXd::Zero(p_->system.parameters()), y, order);
+}
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// A deviation on the section with this penetration: along `direction`, whose h_D falls by 1.
+VectorXd start_at(const DiscontinuityMap& map, const VectorXd& direction, double penetration) {
+  double length = penetration;
+  VectorXd d;
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    d = map.onto_section(length * direction);
+    const double factor = penetration / map.penetration_of_deviation(d);
+    if (!(factor > 0.0) || !std::isfinite(factor)) return VectorXd::Constant(direction.size(), nan);
+    if (std::abs(factor - 1.0) < 1e-3) break;  // which penetration it is does not matter, only that it is known
+    length *= factor;
+  }
+  return d;
+}
+
+ComparedPenetration compared(const DiscontinuityMap& map, const VectorXd& direction, double penetration) {
+  ComparedPenetration row{penetration, nan, {nan, nan, nan}};
+  const VectorXd d = start_at(map, direction, penetration);
+  if (!d.allFinite()) return row;
+  row.penetration = map.penetration_of_deviation(d);
+  const double y = std::sqrt(row.penetration);
+  const VectorXd exact = map.smooth_deviation(d, y);
+  row.change = exact.norm();
+  for (std::size_t k = 0; k < expanded_orders.size(); ++k)
+    row.errors[k] = (exact - map.expanded_deviation(d, y, expanded_orders[k])).norm();
+  return row;
+}
+
+/// What rounding makes of an error: of the deviations, and of the coefficients of y^2.
+double noise(const DiscontinuityMap& map, const ComparedPenetration& row) {
+  constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
+  return rounding * row.change + map.expansion().error * row.penetration;
+}
+
+std::optional<ErrorOrder> fitted(const DiscontinuityMap& map, const std::vector<ComparedPenetration>& rows,
+                                 std::size_t k) {
+  constexpr double clear = 30.0;  // times the noise
+  constexpr std::size_t points = 5;
+  std::vector<const ComparedPenetration*> usable;
+  for (const ComparedPenetration& row : rows)
+    if (row.errors[k] > clear * noise(map, row)) usable.push_back(&row);
+  if (usable.size() > points) usable.erase(usable.begin(), usable.end() - points);
+  if (usable.size() < 2) return std::nullopt;
+  double mean_x = 0.0, mean_y = 0.0, xx = 0.0, xy = 0.0;
+  const auto count = static_cast<double>(usable.size());
+  for (const ComparedPenetration* row : usable) {
+    mean_x += 0.5 * std::log(row->penetration) / count;
+    mean_y += std::log(row->errors[k]) / count;
+  }
+  for (const ComparedPenetration* row : usable) {
+    const double x = 0.5 * std::log(row->penetration) - mean_x;
+    xx += x * x;
+    xy += x * (std::log(row->errors[k]) - mean_y);
+  }
+  return ErrorOrder{xy / xx, usable.front()->penetration, usable.back()->penetration};
+}
+
+}  // namespace
+
+MapComparison compare_with_expansion(const DiscontinuityMap& map, double largest, int decades) {
+  MatrixXd rows(2, map.point().x.size());
+  rows.row(0) = map.point().event_gradient.transpose();
+  rows.row(1) = map.section_gradient().transpose();
+  const VectorXd direction = least_squares(rows, Eigen::Vector2d(-1.0, 0.0));
+  MapComparison result;
+  double penetration = largest;
+  for (int k = 0; k <= decades; ++k, penetration *= 0.1) result.rows.push_back(compared(map, direction, penetration));
+  for (std::size_t k = 0; k < result.orders.size(); ++k) result.orders[k] = fitted(map, result.rows, k);
+  return result;
 }
 
 }  // namespace tchat

@@ -1,28 +1,46 @@
-/// The discontinuity map of a grazing point (2.61-2.70, 2.71-2.79): what contact makes of the intersections of
-/// trajectories with a section through x*.
-///
-/// On P (h_P = h_{D,x} f = 0): x0 in P is where a trajectory of the smooth flow, that ignores the contact, has its
-/// least h_D. Its penetration is -h_D(x0). Where that is positive the trajectory has met D before, at x_in, has jumped
-/// to x_out = g_D(x_in), and the trajectory through x_out meets P at x1 = g_P(x0). Elsewhere g_P(x0) = x0. On another
-/// section P' through x*, transversal to f: x0' flows to P, then g_P, and back to P' (2.73-2.79).
-///
-/// With y = sqrt(-h_D(x0)), g_P(x0) = X(x0, y), where X is smooth in both, for y of either sign. States come and go as
-/// x, but all is computed in deviations from x*, so that x1 - x* keeps its digits at small penetrations.
-///
-/// Views of the system, which outlives the map; const members may be called from several threads where the problem's
-/// functions may.
+/// The discontinuity map of a grazing point, and how far its expansion is from the exact map.
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "maps/cross_section.hpp"
 #include "maps/grazing_point.hpp"
 
 namespace tchat {
+
+// Taylor coefficients of a smooth vector function of one variable, from its values: for functions that are known to
+// rounding but whose derivatives are not at hand.
+
+struct TaylorCoefficients {
+  Eigen::MatrixXd columns;  ///< column k: of t^k at t = 0
+  Eigen::VectorXd errors;   ///< estimated, of each column: largest entry
+};
+
+/// The first `count` (at most 6) coefficients at 0, by the polynomial through Chebyshev points of [-size, size]: `size`
+/// is halved, from `first_size`, and for each coefficient that one taken where two neighbours agree best, between the
+/// truncation of long intervals and the rounding of short ones. Values that are not finite (too far away) leave a size
+/// out; errors are infinite, columns NaN, where no two sizes remain.
+TaylorCoefficients taylor_coefficients(const std::function<Eigen::VectorXd(double)>& function, double first_size,
+                                       int count);
+
+// The discontinuity map of a grazing point (2.61-2.70, 2.71-2.79): what contact makes of the intersections of
+// trajectories with a section through x*.
+//
+// On P (h_P = h_{D,x} f = 0): x0 in P is where a trajectory of the smooth flow, that ignores the contact, has its
+// least h_D. Its penetration is -h_D(x0). Where that is positive the trajectory has met D before, at x_in, has jumped
+// to x_out = g_D(x_in), and the trajectory through x_out meets P at x1 = g_P(x0). Elsewhere g_P(x0) = x0. On another
+// section P' through x*, transversal to f: x0' flows to P, then g_P, and back to P' (2.73-2.79).
+//
+// With y = sqrt(-h_D(x0)), g_P(x0) = X(x0, y), where X is smooth in both, for y of either sign. States come and go as
+// x, but all is computed in deviations from x*, so that x1 - x* keeps its digits at small penetrations.
+//
+// Views of the system, which outlives the map; const members may be called from several threads where the problem's
+// functions may.
 
 /// How much of the expansion of X: terms up to y; y^2, x - x* and p - p*; y^3, y (x - x*) and y (p - p*); or all of X.
 enum class MapOrder { half, one, three_halves, exact };
@@ -81,5 +99,29 @@ class DiscontinuityMap {
   struct Implementation;
   std::unique_ptr<const Implementation> p_;
 };
+
+// The exact discontinuity map beside its expansion, at penetrations over several decades, and the orders of the error.
+
+inline constexpr std::array<MapOrder, 3> expanded_orders{MapOrder::half, MapOrder::one, MapOrder::three_halves};
+
+struct ComparedPenetration {
+  double penetration = 0.0;
+  double change = 0.0;             ///< |g(x0) - x*|, exact; NaN where the exact map has no value
+  std::array<double, 3> errors{};  ///< |exact - expansion|, of the orders above
+};
+
+/// error ~ y^power, by least squares over the smallest penetrations at which rounding does not show.
+struct ErrorOrder {
+  double power = 0.0;
+  double from = 0.0, to = 0.0;  ///< penetrations of the fit
+};
+
+struct MapComparison {
+  std::vector<ComparedPenetration> rows;            ///< penetrations falling by tens
+  std::array<std::optional<ErrorOrder>, 3> orders;  ///< nothing: the expansion is exact but for rounding
+};
+
+/// On the section of the map, straight into D from x*: the shortest tangent of the section along which h_D falls.
+MapComparison compare_with_expansion(const DiscontinuityMap& map, double largest, int decades);
 
 }  // namespace tchat

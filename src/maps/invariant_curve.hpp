@@ -1,18 +1,54 @@
-/// The closed invariant curve of a torus on a section, in the phase phi in which the return map is a rotation:
-///
-///     x = u(phi),   P(u(phi)) = u(phi + rho),   u(phi) = w phi + a_0 + sum_l a_l cos 2 pi l phi + b_l sin 2 pi l phi
-///
-/// w is zero but for states that are angles: those grow by 2 pi (or - 2 pi) a turn of phi. A curve may come from
-/// anywhere; here it is fitted to points of a simulation.
+/// Invariant closed curves on a section as trigonometric polynomials of a phase.
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <string>
 #include <vector>
 
-#include "maps/trigonometric_series.hpp"
-
 namespace tchat {
+
+// The circle, in turns and in radians.
+
+inline constexpr double full_turn = 6.283185307179586476925;
+
+/// Of a phase in turns: in [0, 1).
+inline double phase_fraction(double turns) { return turns - std::floor(turns); }
+/// In [-1/2, 1/2).
+inline double nearest_phase(double turns) { return turns - std::floor(turns + 0.5); }
+
+// A vector function of period 1 as a trigonometric polynomial:
+//
+//     F(phi) = a_0 + sum_l a_l cos 2 pi l phi + b_l sin 2 pi l phi,   l = 1..Q
+
+class TrigonometricSeries {
+ public:
+  TrigonometricSeries() = default;
+  /// rows x (2 Q + 1), the columns a_0, a_1, b_1, a_2, b_2, ...
+  explicit TrigonometricSeries(Eigen::MatrixXd coefficients) : coefficients_(std::move(coefficients)) {}
+  /// Least squares at phases anywhere, rows x K values.
+  static TrigonometricSeries fitted(const Eigen::MatrixXd& values, const Eigen::VectorXd& phases, int harmonics);
+  /// Through values at phi = 0, 1/N, 2/N, ...; N odd, Q = (N - 1) / 2.
+  static TrigonometricSeries through(const Eigen::MatrixXd& values);
+
+  Eigen::Index rows() const { return coefficients_.rows(); }
+  int harmonics() const { return static_cast<int>(coefficients_.cols() / 2); }
+  const Eigen::MatrixXd& coefficients() const { return coefficients_; }
+
+  Eigen::VectorXd operator()(double phi) const { return derivative(phi, 0); }
+  /// Derivative of an order from 0.
+  Eigen::VectorXd derivative(double phi, int order) const;
+
+ private:
+  Eigen::MatrixXd coefficients_;
+};
+
+// The closed invariant curve of a torus on a section, in the phase phi in which the return map is a rotation:
+//
+//     x = u(phi),   P(u(phi)) = u(phi + rho),   u(phi) = w phi + a_0 + sum_l a_l cos 2 pi l phi + b_l sin 2 pi l phi
+//
+// w is zero but for states that are angles: those grow by 2 pi (or - 2 pi) a turn of phi. A curve may come from
+// anywhere; here it is fitted to points of a simulation.
 
 class InvariantCurve {
  public:

@@ -1,4 +1,4 @@
-/// The grazing motion that a composite map stands for, and what its maps are made of.
+/// The grazing motion of `tchat sweep --map`: what the command asks for, and the maps made of it.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,13 +10,25 @@
 #include "maps/composite_map.hpp"
 #include "maps/discontinuity_map.hpp"
 #include "maps/grazing_point.hpp"
-#include "maps/map_request.hpp"
-#include "maps/reduced_map.hpp"
 #include "maps/torus_return.hpp"
 #include "model/hybrid_system.hpp"
 #include "settings/run_settings.hpp"
 
 namespace tchat {
+
+// One `tchat sweep --map`: what the command line says of the map.
+
+struct MapRequest {
+  std::string source;                   ///< q.NAME:LABEL, or a file of section points of a torus
+  std::string order = "3/2";            ///< of the discontinuity map: 1/2, 1, 3/2 or exact
+  int smooth_order = 1;                 ///< of the smooth return map: 1 or 2
+  std::optional<std::string> reduced;   ///< "map" or "ellipse": the phase of a torus alone
+  std::optional<std::string> phase;     ///< a state that is an angle, or two states "y1,y2" that go round
+  std::optional<std::string> wall;      ///< event function of the contact, by number or name
+  std::optional<double> neighbourhood;  ///< of x*, in extents of the torus, in which contact is accounted for
+};
+
+// The grazing motion that a composite map stands for, and what its maps are made of.
 
 /// What of the command line a model needs beside the map's options.
 struct MapContext {

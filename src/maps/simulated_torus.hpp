@@ -1,15 +1,20 @@
-/// A torus that a simulation goes round, as the start of a continuation: the orbits of orbit/torus_system.hpp from
-/// points of a section.
+/// Tori that a simulation follows, as starts of continuations, and the command `tchat simulate --torus`.
 #pragma once
 
+#include <functional>
+#include <ostream>
 #include <vector>
 
 #include "maps/invariant_curve.hpp"
 #include "model/hybrid_system.hpp"
 #include "model/index_vector.hpp"
 #include "orbit/orbit.hpp"
+#include "simulate/simulation_request.hpp"
 
 namespace tchat {
+
+// A torus that a simulation goes round, as the start of a continuation: the orbits of orbit/torus_system.hpp from
+// points of a section.
 
 /// A segment of the simulated motion: what ended it, and where it began.
 struct PassedSegment {
@@ -34,5 +39,14 @@ PointsWithAngles with_angles(const HybridSystem& system, const Signature& one_re
 /// Throws ComputationError where one cannot be integrated.
 Orbit orbits_from_curve(const HybridSystem& system, const Signature& one_return, const InvariantCurve& curve,
                         const ParameterVector& par, int orbits, int intervals, int collocation);
+
+// `tchat simulate --torus`: from the points in which a simulated motion begins its returns to the start of a run of
+// tori, a label in q.NAME2 and constants in gc.NAME2.
+
+/// Exit status. The motion is simulated as the plan says, 1500 returns after 500 where it says nothing. Throws
+/// UserError where there is no signature, the motion does not go by it, or its points lie on no closed curve;
+/// ComputationError.
+int simulate_torus(const SimulationRequest& request, const std::string& torus_name, std::ostream& screen,
+                   std::ostream& warnings, const std::function<bool()>& interrupted, std::ostream* progress);
 
 }  // namespace tchat

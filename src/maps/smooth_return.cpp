@@ -2,21 +2,83 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/numeric/odeint.hpp>
 #include <cmath>
 #include <utility>
 
 #include "base/user_error.hpp"
 #include "model/event_at.hpp"
+#include "motion/cvodes_flow.hpp"
+#include "motion/mode_rule.hpp"
 #include "motion/segment_flow.hpp"
 
 namespace tchat {
 
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+VectorXd QuadraticMap::operator()(const VectorXd& z) const {
+  const VectorXd u = z - at;
+  VectorXd image = value + first * u;
+  for (std::size_t i = 0; i < second.size(); ++i) image(static_cast<Eigen::Index>(i)) += 0.5 * u.dot(second[i] * u);
+  return image;
+}
+
+MatrixXd QuadraticMap::derivative(const VectorXd& z) const {
+  MatrixXd jacobian = first;
+  const VectorXd u = z - at;
+  for (std::size_t i = 0; i < second.size(); ++i)
+    jacobian.row(static_cast<Eigen::Index>(i)) += (second[i] * u).transpose();
+  return jacobian;
+}
+
 namespace {
 
-using Eigen::MatrixXd;
+std::vector<IndexVector> following(const HybridSystem& system, const IndexVector& from, const Eigen::VectorXd& z,
+                                   const Eigen::VectorXd& par) {
+  return system.successors(from, z.data(), par.data()).value_or(std::vector<IndexVector>{});
+}
+
+}  // namespace
+
+Signature return_path(const HybridSystem& system, const Eigen::VectorXd& z, const Eigen::VectorXd& par, int section,
+                      int field, const FlowOptions& given, int most) {
+  FlowOptions options = given;
+  options.variational = false;
+  Signature path;
+  Eigen::VectorXd x = z;
+  std::vector<IndexVector> mode = following(system, {0, 0, 0}, x, par);
+  while (static_cast<int>(path.size()) < most) {
+    if (!mode.empty()) field = mode.front().field;
+    std::vector<int> events{section};
+    for (const IndexVector& index : mode)
+      if (std::find(events.begin(), events.end(), index.event) == events.end()) events.push_back(index.event);
+    CvodesFlow flow(system, field, x, par, options);
+    flow.watch(events);
+    const Progress progress = flow.advance(options.max_duration);
+    if (progress == Progress::failed) throw ComputationError(flow.message());
+    if (progress != Progress::root)
+      throw ComputationError(fmt::format("the flow from {} does not come back to the section within time {:g}",
+                                         state_text(z), options.max_duration));
+    if (flow.fallen() == section) {
+      path.push_back({field, section, no_function});
+      return path;
+    }
+    const Mode watched{mode, {}};
+    const IndexVector index = watched.ended_by(flow.fallen());
+    path.push_back(index);
+    const Eigen::VectorXd before = flow.state();
+    system.value(FunctionKind::jump, index.jump, before.data(), par.data(), x.data());
+    mode = following(system, index, before, par);
+  }
+  throw ComputationError(
+      fmt::format("the flow from {} does not come back to the section within {} events", state_text(z), most));
+}
+
+namespace {
+
 using Eigen::RowVectorXd;
-using Eigen::VectorXd;
 
 using Second = std::vector<MatrixXd>;
 
@@ -208,6 +270,73 @@ QuadraticMap smooth_return(const HybridSystem& system, const Signature& path, co
   if (!passed.z.allFinite() || !passed.first.allFinite())
     throw ComputationError("the return to the section has no finite derivatives");
   return {z, passed.z, passed.first, passed.second, passed.time};
+}
+
+namespace {
+
+using Eigen::Index;
+
+constexpr double closure = 1e-5;  // of the turn, relative to the orbit's extent
+
+VectorXd floored(const VectorXd& extent) { return extent.cwiseMax(1e-3 * extent.maxCoeff()); }
+
+double scaled_distance(const VectorXd& d, const VectorXd& scale) {
+  return d.cwiseQuotient(scale).cwiseAbs().maxCoeff();
+}
+
+/// How often the section is met on the last segment up to x*, where it ends: the orbit has further least distances.
+int crossings_before(const SuspendedSystem& suspended, const IndexVector& index, int section, const VectorXd& start,
+                     const VectorXd& par, double duration, const FlowOptions& given) {
+  FlowOptions options = given;
+  options.variational = false;
+  CvodesFlow flow(suspended.system(), index.field, start, par, options);
+  flow.watch({section});
+  int crossings = 0;
+  // x* itself is met within the errors of `duration`, and does not count.
+  while (flow.advance(duration * (1.0 - 1e-6)) == Progress::root) ++crossings;
+  return crossings;
+}
+
+}  // namespace
+
+PeriodicReturn::PeriodicReturn(std::shared_ptr<const SuspendedSystem> suspended, const GrazingTurn& turn, int section,
+                               int order, const FlowOptions& options)
+    : suspended_(std::move(suspended)), extent_(floored(turn.extent)) {
+  const HybridSystem& system = suspended_->system();
+  const VectorXd start = suspended_->suspended(turn.x, turn.par);
+  FlowOptions waiting = options;
+  for (const double duration : turn.durations) waiting.max_duration = std::max(waiting.max_duration, 2.0 * duration);
+  VectorXd last = start;
+  if (turn.segments.size() > 1) {
+    const Signature before(turn.segments.begin(), turn.segments.end() - 1);
+    last = smooth_return(system, before, start, turn.par, 1, waiting).value;
+    path_ = before;
+  }
+  const IndexVector onto{turn.segments.back().field, section, no_function};
+  const int crossings = crossings_before(*suspended_, onto, section, last, turn.par, turn.durations.back(), waiting);
+  path_.insert(path_.end(), static_cast<std::size_t>(crossings + 1), onto);
+  map_ = smooth_return(system, path_, start, turn.par, order, waiting);
+  const double miss = scaled_distance(suspended_->state(map_.value - start), extent_);
+  if (!(miss <= closure))
+    throw ComputationError(
+        fmt::format("the smooth flow from the grazing point x* = {} does not come back to it: after time {:.6g} it is "
+                    "{:.1e} of the orbit's extent away",
+                    state_text(turn.x), map_.time, miss));
+  // The orbit's own error must not look like a drift of the map: x* is its fixed point.
+  map_.value = start;
+}
+
+VectorXd PeriodicReturn::image(const VectorXd& x, const ParameterVector& par) const {
+  return suspended_->state(map_(suspended_->suspended(x, par)));
+}
+
+MatrixXd PeriodicReturn::derivative(const VectorXd& x, const ParameterVector& par) const {
+  const Index n = x.size();
+  return map_.derivative(suspended_->suspended(x, par)).topLeftCorner(n, n);
+}
+
+double PeriodicReturn::distance(const VectorXd& x) const {
+  return scaled_distance(x - suspended_->state(map_.at), extent_);
 }
 
 }  // namespace tchat

@@ -4,13 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include "base/user_error.hpp"
-#include "maps/circle.hpp"
-#include "maps/return_path.hpp"
-#include "maps/smooth_return.hpp"
+#include "model/event_at.hpp"
 #include "motion/mode_rule.hpp"
+#include "motion/segment_flow.hpp"
+#include "run/orbit_start.hpp"
+#include "settings/settings_type.hpp"
 
 namespace tchat {
 
@@ -191,6 +194,242 @@ double TorusReturn::time(const VectorXd& x) const { return times_(projection_.ph
 double TorusReturn::distance(const VectorXd& x) const {
   const VectorXd d = curve_.difference(x, curve_.at(projection_.phase(x)));
   return d.cwiseQuotient(scale_).cwiseAbs().maxCoeff();
+}
+
+namespace {
+
+/// Longest way from the section to P, as a share of the time of a return, on which x* is looked for; and at which it
+/// counts as lying on the section.
+constexpr double search_share = 0.1;
+constexpr double on_section_share = 1e-3;
+
+/// The trajectory through a point of the curve where it meets P.
+struct Least {
+  double phi = 0.0, time = 0.0;
+  VectorXd x;
+  double h = 0.0;
+  double slope = 0.0;  // d h / d phi
+};
+
+class LeastDistance {
+ public:
+  LeastDistance(const HybridSystem& system, const TorusReturn& torus, int field, int wall)
+      : system_(system), torus_(torus), field_(field), wall_(wall) {}
+
+  /// h_D where P is met, as a parabola in time from u(phi) tells; nothing where P is far or h_D has a maximum there.
+  std::optional<double> estimate(double phi) const {
+    const VectorXd x = torus_.on_curve(phi);
+    const Surface at = surface(x);
+    if (!(at.a > 0.0) || std::abs(at.rate / at.a) > search_share * torus_.mean_time()) return std::nullopt;
+    return at.h - 0.5 * at.rate * at.rate / at.a;
+  }
+
+  Least at(double phi) const {
+    Least least{phi, 0.0, torus_.on_curve(phi), 0.0, 0.0};
+    const VectorXd start = least.x;
+    Eigen::MatrixXd flow = Eigen::MatrixXd::Identity(start.size(), start.size());
+    for (int iteration = 0; iteration < 10; ++iteration) {
+      const Surface now = surface(least.x);
+      const double step = -now.rate / now.a;
+      if (std::abs(step) <= 1e-14 * torus_.mean_time()) break;
+      least.time += step;
+      FlowOptions options;
+      const SegmentFlow moved = integrate_for(system_, field_, start, torus_.parameters(), least.time, options);
+      if (moved.status == FlowStatus::failed) throw ComputationError(moved.message);
+      least.x = moved.end_state;
+      flow = moved.jacobian;
+    }
+    const EventAt event = event_at(system_, wall_, least.x.data(), torus_.parameters().data());
+    least.h = event.h;
+    least.slope = event.gradient.dot(flow * torus_.curve().derivative(phi));
+    return least;
+  }
+
+ private:
+  struct Surface {
+    double h, rate, a;  // h_D, h_P, h_{P,x} f
+  };
+  Surface surface(const VectorXd& x) const {
+    const EventAt at = event_at(system_, wall_, field_, x.data(), torus_.parameters().data());
+    return {at.h, at.rate(), rate_gradient(system_, at, wall_, field_, x.data(), torus_.parameters().data()).dot(at.f)};
+  }
+
+  const HybridSystem& system_;
+  const TorusReturn& torus_;
+  int field_, wall_;
+};
+
+}  // namespace
+
+TorusGrazing torus_grazing(const HybridSystem& system, const TorusReturn& torus, int field, int wall, int parameter,
+                           const std::string& source) {
+  const LeastDistance distance(system, torus, field, wall);
+  const int samples = std::max(1000, 16 * torus.curve().harmonics());
+  double guess = -1.0, least_h = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < samples; ++k) {
+    const double phi = static_cast<double>(k) / samples;
+    const std::optional<double> h = distance.estimate(phi);
+    if (h && *h < least_h) least_h = *h, guess = phi;
+  }
+  const std::string wall_name = system.function_name(FunctionKind::event, wall);
+  if (guess < 0.0)
+    throw UserError(
+        fmt::format("{}: nowhere near this section is event {} ({}) least along a trajectory; take the "
+                    "section where it is least, or one through that point",
+                    source, wall, wall_name));
+  // The zero of the slope between the neighbours of the least sample.
+  double low = guess - 1.0 / samples, high = guess + 1.0 / samples;
+  Least at_low = distance.at(low), at_high = distance.at(high);
+  if (!(at_low.slope < 0.0 && at_high.slope > 0.0))
+    throw UserError(
+        fmt::format("{}: the section does not pass through the point of the torus nearest to event {} ({}): the "
+                    "least value seen near the section, {:.6g}, is at x = {}, at the end of where it can be "
+                    "seen; put the section there",
+                    source, wall, wall_name, least_h, state_text(distance.at(guess).x)));
+  Least best = distance.at(guess);
+  for (int iteration = 0; iteration < 60 && std::abs(high - low) > 1e-14; ++iteration) {
+    // Regula falsi, with a bisection every third time.
+    const double share = iteration % 3 == 2 ? 0.5 : at_low.slope / (at_low.slope - at_high.slope);
+    best = distance.at(low + share * (high - low));
+    if (best.slope == 0.0) break;
+    (best.slope < 0.0 ? low : high) = best.phi;
+    (best.slope < 0.0 ? at_low : at_high) = best;
+  }
+  if (std::abs(best.time) > on_section_share * torus.mean_time())
+    throw UserError(
+        fmt::format("{}: the section does not pass through the grazing point x* = {}, which is met {:.2g} {} "
+                    "it; put the section there (a parameter of it, perhaps) and simulate again",
+                    source, state_text(best.x), std::abs(best.time), best.time > 0.0 ? "after" : "before"));
+
+  TorusGrazing grazing{phase_fraction(best.phi), best.time, best.x, torus.parameters()};
+  const std::vector<int> active{parameter};
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    double h = 0.0, hp = 0.0;
+    VectorXd hx(grazing.x.size());
+    system.first(FunctionKind::event, wall, grazing.x.data(), grazing.par.data(), active, &h, hx.data(), &hp);
+    if (!(std::abs(hp) > 1e-12))
+      throw UserError(
+          fmt::format("{}: event {} ({}) does not depend on {}, so that it cannot bring the wall to the torus; "
+                      "sweep a parameter of the wall, or give the torus in contact",
+                      source, wall, wall_name, system.parameter_name(parameter)));
+    const double step = -h / hp;
+    grazing.par(parameter - 1) += step;
+    if (std::abs(step) <= 1e-15 * (1.0 + std::abs(grazing.par(parameter - 1)))) break;
+  }
+  return grazing;
+}
+
+namespace {
+
+Orbit orbit_of_label(const HybridSystem& system, const LabelledSolution& solution, const RunSettings& settings,
+                     const std::string& source) {
+  const auto n = static_cast<Index>(system.dimension());
+  const Index m = segment_count(settings);
+  const Index rows = solution.states.rows();
+  if (rows % (n * m) != 0 || rows / (n * m) % 2 == 0 || rows / (n * m) < 3)
+    throw UserError(
+        fmt::format("{}: {} states at each time are no odd number of returns of {} segments of {} states; give the "
+                    "constants of its run with -c",
+                    source, rows, m, n));
+  return orbit_from_solution(
+             in_layout(solution, system.layout()),
+             {system.dimension(), static_cast<int>(rows / n), solution.mesh_intervals, solution.collocation_points}, {},
+             source)
+      .orbit;
+}
+
+InvariantCurve curve_through(const MatrixXd& values, double rotation, const VectorXd& winding) {
+  MatrixXd periodic = values;
+  for (Index l = 0; l < values.cols(); ++l)
+    periodic.col(l) -= static_cast<double>(l) / static_cast<double>(values.cols()) * winding;
+  return {phase_fraction(rotation), winding, TrigonometricSeries::through(periodic)};
+}
+
+}  // namespace
+
+TorusLabel::TorusLabel(const HybridSystem& system, const LabelledSolution& solution, const RunSettings& settings,
+                       std::string source)
+    : system_(system),
+      settings_(settings),
+      source_(std::move(source)),
+      orbit_(orbit_of_label(system, solution, settings, source_)),
+      torus_(system, settings.signature(), orbit_.shape.segments / segment_count(settings), {},
+             torus_winding(system, settings.signature(), orbit_)) {
+  const int m = torus_.segments_per_return();
+  const TorusWinding& winding = torus_.winding();
+  for (int s = 0; s < m; ++s) {
+    const IndexVector& index = settings_.segments[static_cast<std::size_t>(s)].index;
+    if (std::any_of(sections_.begin(), sections_.end(), [&](const Section& of) { return of.event == index.event; }))
+      continue;
+    MatrixXd values(system_.dimension(), orbits());
+    for (int i = 0; i < orbits(); ++i) values.col(i) = Eigen::Map<const VectorXd>(orbit_.end(i * m + s), values.rows());
+    // Angles that do not go round, as a map that counts them modulo 2 pi has them.
+    for (Index a = 0; a < values.rows(); ++a)
+      if (winding.curve(a) == 0.0 && winding.returns(a) != 0.0)
+        values.row(a).array() -= full_turn * std::floor(values.row(a).mean() / full_turn);
+    sections_.push_back(
+        {index.event, index.field, index.jump, curve_through(values, rotation(), winding.curve), values});
+  }
+}
+
+/// From the mesh point before it, by the flow, the time corrected by Newton's method.
+VectorXd TorusLabel::on_p(int wall, int field, const VectorXd& from, double duration) const {
+  FlowOptions options;
+  options.relative_tolerance = 1e-13;
+  options.absolute_tolerance = 1e-14;
+  options.variational = false;
+  VectorXd x = from;
+  constexpr int most_corrections = 6;
+  for (int k = 0; k < most_corrections; ++k) {
+    const SegmentFlow flow = integrate_for(system_, field, from, orbit_.par, duration, options);
+    if (flow.status == FlowStatus::failed)
+      throw ComputationError(fmt::format("{}: a point of P cannot be found: {}", source_, flow.message));
+    x = flow.end_state;
+    const EventAt at = event_at(system_, wall, field, x.data(), orbit_.par.data());
+    const double step = -at.rate() / rate_gradient(system_, at, wall, field, x.data(), orbit_.par.data()).dot(at.f);
+    duration += step;
+    if (std::abs(step) <= 1e-13 * (1.0 + std::abs(duration))) break;
+  }
+  return x;
+}
+
+/// Those of one return, from its beginning on.
+std::vector<VectorXd> TorusLabel::wall_contacts(int wall, int field, double phi) const {
+  const Orbit x = return_at(torus_, orbit_, phase_fraction(phi));
+  const int c = x.shape.collocation;
+  std::vector<VectorXd> points;
+  for (int s = 0; s < x.shape.segments; ++s) {
+    if (settings_.segments[static_cast<std::size_t>(s)].index.field != field) continue;
+    double before = 0.0;
+    for (int k = 0; k < x.shape.nodes(); ++k) {
+      const double rate = event_at(system_, wall, field, x.node(s, k), x.par.data()).rate();
+      if (before < 0.0 && rate >= 0.0) {
+        const int left = (k - 1) / c * c;
+        const double share = before / (before - rate);
+        const double tau = x.tau(k - 1) + share * (x.tau(k) - x.tau(k - 1));
+        points.push_back(on_p(wall, field, Eigen::Map<const VectorXd>(x.node(s, left), x.shape.dimension),
+                              (tau - x.tau(left)) * x.duration(s)));
+      }
+      before = rate;
+    }
+  }
+  return points;
+}
+
+MatrixXd TorusLabel::points_on_p(int wall, int field, int count) const {
+  MatrixXd points(system_.dimension(), count);
+  Index known = 0;
+  constexpr int returns_in_vain = 1000;
+  for (int k = 0; known < count; ++k) {
+    if (k >= returns_in_vain && known == 0)
+      throw UserError(
+          fmt::format("{}: nowhere on the torus is event {} ({}) least along a trajectory; name another wall with "
+                      "--wall",
+                      source_, wall, system_.function_name(FunctionKind::event, wall)));
+    for (const VectorXd& x : wall_contacts(wall, field, k * rotation()))
+      if (known < count) points.col(known++) = x;
+  }
+  return points;
 }
 
 }  // namespace tchat

@@ -1,21 +1,32 @@
-/// P_smooth near the invariant curve of a torus (3.20), (3.33), (4.13):
-///
-///     P(x, p) = u(phi + rho) + A(phi) (x - u(phi)) + A_p(phi) (p - p_0) [+ second order],   phi the projection of x
-///
-/// u(phi + rho) is exact on the curve; the derivatives are computed at equal phases by the variational equations and
-/// interpolated by trigonometric polynomials. Where the flow does not depend on a parameter (that of h_D alone) A_p is
-/// zero to rounding, and so is the torus's dependence on it.
+/// The smooth return map near the invariant curve of a torus, where such a torus touches an event surface, and the
+/// torus of a label.
 #pragma once
 
 #include <Eigen/Core>
 #include <memory>
+#include <string>
+#include <vector>
 
+#include "files/solution_file.hpp"
 #include "maps/invariant_curve.hpp"
-#include "maps/section_map.hpp"
+#include "maps/smooth_return.hpp"
 #include "maps/suspended_system.hpp"
+#include "model/hybrid_system.hpp"
+#include "model/parameter_vector.hpp"
 #include "motion/flow_options.hpp"
+#include "orbit/orbit.hpp"
+#include "orbit/torus_system.hpp"
+#include "settings/run_settings.hpp"
 
 namespace tchat {
+
+// P_smooth near the invariant curve of a torus (3.20), (3.33), (4.13):
+//
+//     P(x, p) = u(phi + rho) + A(phi) (x - u(phi)) + A_p(phi) (p - p_0) [+ second order],   phi the projection of x
+//
+// u(phi + rho) is exact on the curve; the derivatives are computed at equal phases by the variational equations and
+// interpolated by trigonometric polynomials. Where the flow does not depend on a parameter (that of h_D alone) A_p is
+// zero to rounding, and so is the torus's dependence on it.
 
 struct TorusSettings {
   int order = 1;           ///< or 2
@@ -81,6 +92,69 @@ class TorusReturn : public SmoothMap {
   int nodes_ = 0;
   double defect_ = 0.0, interpolation_error_ = 0.0, mean_time_ = 0.0;
   bool depends_ = false;
+};
+
+// Where a torus of the smooth flow touches an event surface: the least h_D over all its trajectories.
+//
+// Unknowns phi, sigma and one parameter p; equations
+//
+//     h_P(X_0) = 0,  X_0 = Phi(u(phi), sigma),      h_{D,x}(X_0) Phi_x u'(phi) = 0,      h_D(X_0, p) = 0
+//
+// X_0 is where the trajectory through u(phi) meets P (2.73); on P itself sigma = 0. What the parameter does to the
+// torus is not accounted for: nothing where only h_D depends on it.
+
+struct TorusGrazing {
+  double phase = 0.0;   ///< phi*
+  double time = 0.0;    ///< sigma, from the section to P
+  Eigen::VectorXd x;    ///< x*, on P
+  ParameterVector par;  ///< with the value at which it touches
+};
+
+/// Field `field`, event function `wall`, PAR(`parameter`) moves. Throws UserError, beginning with `source`, when the
+/// section does not pass through a point of least h_D, and when h_D does not depend on the parameter.
+TorusGrazing torus_grazing(const HybridSystem& system, const TorusReturn& torus, int field, int wall, int parameter,
+                           const std::string& source);
+
+// The torus of a label (orbit/torus_system.hpp) as closed curves on sections, for composite maps: its curve, the
+// derivative of that and rho come from the solution of equations, nothing is simulated.
+//
+// The events that end the segments of its return are sections, v_s(phi) = x_s(1; phi) the curve on that of segment s,
+// a trigonometric polynomial through N values. On P, h_P = 0, which need be none of them, points are collected
+// along one motion on the computed torus, u(phi_0 + k rho), k = 0, 1, ..., each from the mesh point before it.
+
+class TorusLabel {
+ public:
+  /// `source` is for messages. Throws UserError where the label does not belong to the constants.
+  TorusLabel(const HybridSystem& system, const LabelledSolution& solution, const RunSettings& settings,
+             std::string source);
+
+  /// What one segment's end is a section for.
+  struct Section {
+    int event, field, jump;
+    InvariantCurve curve;
+    Eigen::MatrixXd points;  ///< u at the N phases
+  };
+  /// Of each event function once, in the order of the segments.
+  const std::vector<Section>& sections() const { return sections_; }
+  const ParameterVector& par() const { return orbit_.par; }
+  double rotation() const { return orbit_.par.rotation(); }
+  int orbits() const { return torus_.orbits(); }
+  const std::string& source() const { return source_; }
+
+  /// Where event function `wall` is least along trajectories of a field: n x count, in the order in which one motion
+  /// comes there. Throws UserError where it is so nowhere.
+  Eigen::MatrixXd points_on_p(int wall, int field, int count) const;
+
+ private:
+  std::vector<Eigen::VectorXd> wall_contacts(int wall, int field, double phi) const;
+  Eigen::VectorXd on_p(int wall, int field, const Eigen::VectorXd& from, double duration) const;
+
+  const HybridSystem& system_;
+  RunSettings settings_;
+  std::string source_;
+  Orbit orbit_;
+  TorusSystem torus_;
+  std::vector<Section> sections_;
 };
 
 }  // namespace tchat

@@ -5,8 +5,7 @@
 
 #include "composite_map_problems.hpp"
 #include "maps/composite_map.hpp"
-#include "maps/map_attractor.hpp"
-#include "maps/periodic_return.hpp"
+#include "maps/smooth_return.hpp"
 #include "motion/hybrid_simulation.hpp"
 #include "motion/orbit_flow.hpp"
 #include "support/random_matrices.hpp"

@@ -5,9 +5,7 @@
 #include <cmath>
 
 #include "base/user_error.hpp"
-#include "maps/born_orbits.hpp"
 #include "maps/grazing_problems.hpp"
-#include "maps/grazing_verdict.hpp"
 #include "motion/orbit_flow.hpp"
 #include "orbit/ring_system.hpp"
 #include "support/random_matrices.hpp"

@@ -1,5 +1,5 @@
 // What iterates settle on, of maps in closed form.
-#include "maps/map_attractor.hpp"
+#include "maps/composite_map.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,5 +1,5 @@
 // What a sweep records of iterated maps whose attractors are known: the logistic map, and rotations of the circle.
-#include "maps/map_sampler.hpp"
+#include "maps/map_sweep_problem.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

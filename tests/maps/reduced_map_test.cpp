@@ -3,9 +3,8 @@
 #include <memory>
 
 #include "fvdp_torus.hpp"
-#include "maps/map_attractor.hpp"
-#include "maps/reduced_map.hpp"
-#include "maps/torus_grazing.hpp"
+#include "maps/composite_map.hpp"
+#include "maps/torus_return.hpp"
 
 using namespace tchat;
 using namespace tchat::test;

@@ -3,7 +3,6 @@
 #include <catch2/catch.hpp>
 
 #include "composite_map_problems.hpp"
-#include "maps/periodic_return.hpp"
 #include "maps/smooth_return.hpp"
 #include "maps/suspended_system.hpp"
 #include "motion/segment_flow.hpp"
