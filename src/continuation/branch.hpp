@@ -8,7 +8,6 @@
 #include "continuation/path_point.hpp"
 #include "continuation/point_data.hpp"
 #include "orbit/admissibility.hpp"
-#include "stability/multipliers.hpp"
 #include "stability/test_function.hpp"
 
 namespace tchat {

@@ -9,7 +9,7 @@
 #include "linear/dense_matrix.hpp"
 #include "linear/stack_array.hpp"
 #include "orbit/orbit.hpp"
-#include "stability/label_evidence.hpp"
+#include "stability/test_function.hpp"
 
 namespace tchat {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "orbit/monitor.hpp"
-#include "stability/multipliers.hpp"
+#include "stability/test_function.hpp"
 
 namespace tchat {
 

@@ -6,7 +6,6 @@
 
 #include "continuation/path_point.hpp"
 #include "orbit/event_minima.hpp"
-#include "stability/multipliers.hpp"
 #include "stability/test_function.hpp"
 
 namespace tchat {

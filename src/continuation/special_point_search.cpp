@@ -18,9 +18,8 @@
 #include "orbit/equilibrium_system.hpp"
 #include "orbit/orbit.hpp"
 #include "stability/bifurcation_tests.hpp"
-#include "stability/equilibrium_eigenvalues.hpp"
-#include "stability/sliding_bifurcation.hpp"
-#include "stability/torus_multipliers.hpp"
+#include "stability/equilibrium_tests.hpp"
+#include "stability/floquet_multipliers.hpp"
 
 namespace tchat {
 

@@ -10,7 +10,7 @@
 #include "continuation/branch_point_bracket.hpp"
 #include "continuation/newton_result.hpp"
 #include "continuation/point_data.hpp"
-#include "stability/locator.hpp"
+#include "stability/test_function.hpp"
 
 namespace tchat {
 

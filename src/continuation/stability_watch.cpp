@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "stability/label_evidence.hpp"
+#include "stability/test_function.hpp"
 
 namespace tchat {
 

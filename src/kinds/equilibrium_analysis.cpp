@@ -3,7 +3,7 @@
 #include "kinds/families.hpp"
 #include "orbit/condensed_system.hpp"
 #include "orbit/equilibrium_system.hpp"
-#include "stability/equilibrium_eigenvalues.hpp"
+#include "stability/equilibrium_tests.hpp"
 
 namespace tchat {
 

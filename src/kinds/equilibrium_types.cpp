@@ -12,7 +12,7 @@
 #include "run/branch_switch.hpp"
 #include "run/hopf_switch.hpp"
 #include "run/solver_settings.hpp"
-#include "stability/equilibrium_curve_tests.hpp"
+#include "stability/equilibrium_tests.hpp"
 
 namespace tchat {
 

@@ -11,8 +11,7 @@
 #include "run/branch_switch.hpp"
 #include "settings/settings_type.hpp"
 #include "stability/bifurcation_tests.hpp"
-#include "stability/contact_test.hpp"
-#include "stability/grazing_curve_tests.hpp"
+#include "stability/grazing_tests.hpp"
 
 namespace tchat {
 

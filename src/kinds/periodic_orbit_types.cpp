@@ -15,7 +15,6 @@
 #include "run/branch_switch.hpp"
 #include "run/hopf_switch.hpp"
 #include "stability/bifurcation_tests.hpp"
-#include "stability/codimension_two_tests.hpp"
 #include "stability/curve_tests.hpp"
 
 namespace tchat {

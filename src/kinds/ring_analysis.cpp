@@ -12,7 +12,7 @@
 #include "model/identity_jump.hpp"
 #include "orbit/ring_system.hpp"
 #include "stability/bifurcation_tests.hpp"
-#include "stability/equilibrium_eigenvalues.hpp"
+#include "stability/equilibrium_tests.hpp"
 
 namespace tchat {
 

@@ -5,7 +5,7 @@
 #include "kinds/ring_analysis.hpp"
 #include "orbit/torus_system.hpp"
 #include "stability/bifurcation_tests.hpp"
-#include "stability/torus_multipliers.hpp"
+#include "stability/floquet_multipliers.hpp"
 
 namespace tchat {
 

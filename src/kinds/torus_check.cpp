@@ -8,7 +8,7 @@
 #include "orbit/torus_system.hpp"
 #include "run/torus_start.hpp"
 #include "settings/settings_type.hpp"
-#include "stability/torus_multipliers.hpp"
+#include "stability/floquet_multipliers.hpp"
 
 namespace tchat {
 

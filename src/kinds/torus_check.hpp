@@ -10,7 +10,7 @@ namespace tchat {
 
 /// `one_return`: the constants of the run; `x`: the N orbits one after the other. A segment of the result is one of the
 /// return: the worst of it over all phases, its mean duration. `stored`: the moduli of the multipliers in the d-file;
-/// they are compared with moduli_along_rotation() (stability/torus_multipliers.hpp) of the integrated return maps. A
+/// they are compared with moduli_along_rotation() (stability/floquet_multipliers.hpp) of the integrated return maps. A
 /// return map that ends in contact has no derivative, and no multipliers are compared then.
 OrbitCheck check_torus(const HybridSystem& system, const RunSettings& one_return, const Orbit& x,
                        const std::vector<std::complex<double>>& stored, double tolerance);

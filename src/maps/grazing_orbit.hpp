@@ -10,7 +10,7 @@
 #include "maps/discontinuity_map.hpp"
 #include "maps/grazing_point.hpp"
 #include "model/index_vector.hpp"
-#include "stability/grazing_response.hpp"
+#include "stability/grazing_tests.hpp"
 
 namespace tchat {
 

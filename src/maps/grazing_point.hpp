@@ -9,7 +9,7 @@
 #include "model/index_vector.hpp"
 #include "model/parameter_vector.hpp"
 #include "orbit/ring_system.hpp"
-#include "stability/grazing_response.hpp"
+#include "stability/grazing_tests.hpp"
 
 namespace tchat {
 

@@ -13,7 +13,7 @@
 #include "run/orbit_start.hpp"
 #include "settings/family.hpp"
 #include "settings/settings_type.hpp"
-#include "stability/grazing_curve_tests.hpp"
+#include "stability/grazing_tests.hpp"
 
 namespace tchat {
 

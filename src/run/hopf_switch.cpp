@@ -25,7 +25,7 @@
 #include "settings/point_type.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"
-#include "stability/equilibrium_eigenvalues.hpp"
+#include "stability/equilibrium_tests.hpp"
 
 namespace tchat {
 

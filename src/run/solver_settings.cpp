@@ -15,11 +15,9 @@
 #include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"
 #include "stability/bifurcation_tests.hpp"
-#include "stability/contact_test.hpp"
-#include "stability/equilibrium_curve_tests.hpp"
 #include "stability/equilibrium_tests.hpp"
-#include "stability/sliding_bifurcation.hpp"
-#include "stability/user_value_test.hpp"
+#include "stability/grazing_tests.hpp"
+#include "stability/test_function.hpp"
 
 namespace tchat {
 

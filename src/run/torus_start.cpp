@@ -16,9 +16,8 @@
 #include "settings/point_type.hpp"
 #include "settings/settings_type.hpp"
 #include "stability/bifurcation_tests.hpp"
-#include "stability/segment_map.hpp"
+#include "stability/floquet_multipliers.hpp"
 #include "stability/torus_contact.hpp"
-#include "stability/torus_contact_condition.hpp"
 
 namespace tchat {
 

@@ -70,7 +70,7 @@ class TorusProblem final : public ProblemType {
 
 /// Tori, without a further condition.
 BranchCurve free_torus(const TorusSystem& system, const OrbitShape& shape, const RunSettings& one_return);
-/// Tori in grazing contact (stability/torus_contact_condition.hpp) with the first chosen event.
+/// Tori in grazing contact (stability/torus_contact.hpp) with the first chosen event.
 BranchCurve touching_torus(const TorusSystem& system, const OrbitShape& shape, const RunSettings& one_return);
 
 /// A monitored event function on a segment (from 0) of the return.

@@ -1,19 +1,26 @@
-/// Test functions of the bifurcations of orbits: fold, branch point, period doubling, torus.
-///
-/// None has a pole or a gap where an impact velocity a_s = h_x f goes through zero and a multiplier through infinity:
-/// the product over (1 + mu) is taken with that of the a_s, as one determinant (floquet_multipliers.hpp). The branch
-/// point's function has the sign of the determinant of the boundary value problem bordered by the tangent, regular at
-/// a_s = 0 and of constant sign through folds. The determinant's size tells nothing: it has factors of the mesh and
-/// goes like exp(-1/2 integral of tr f_x), over many decades along a branch. The function's size is the distance to a
-/// singular matrix.
+/// Test functions of the bifurcations of orbits: of smooth ones and of those of Filippov systems.
 #pragma once
+
+#include <tchat/problem.h>
 
 #include <complex>
 #include <optional>
+#include <string>
+#include <vector>
 
+#include "orbit/defining_system.hpp"
 #include "stability/test_function.hpp"
 
 namespace tchat {
+
+// Test functions of the bifurcations of orbits: fold, branch point, period doubling, torus.
+//
+// None has a pole or a gap where an impact velocity a_s = h_x f goes through zero and a multiplier through infinity:
+// the product over (1 + mu) is taken with that of the a_s, as one determinant (floquet_multipliers.hpp). The branch
+// point's function has the sign of the determinant of the boundary value problem bordered by the tangent, regular at
+// a_s = 0 and of constant sign through folds. The determinant's size tells nothing: it has factors of the mesh and
+// goes like exp(-1/2 integral of tr f_x), over many decades along a branch. The function's size is the distance to a
+// singular matrix.
 
 class DefiningSystem;
 class HybridSystem;
@@ -121,5 +128,48 @@ std::optional<std::complex<double>> nearest_pair(const TestedPoint& point,
 
 /// "x1 = 1, x2 = 0, ...": a state of `orbit`, n entries; what is below its uncertainty there is written as 0.
 std::string state_text(const HybridSystem& system, const Orbit& orbit, const double* state);
+
+// The four sliding bifurcations of orbits of Filippov systems, by the pieces that meet where something vanishes.
+//
+// With the fields f- and f+ on the sides of a surface h = 0 and the sliding field between them (tchat_sliding):
+//
+// | name              | the pieces at the point                                      | vanishes with              |
+// |-------------------|--------------------------------------------------------------|----------------------------|
+// | crossing-sliding  | side, sliding, other side; or side, other side               | h_x f of the side left to  |
+// | grazing-sliding   | side, sliding, the same side; or one side that touches h = 0 | h_x f of that side         |
+// | switching-sliding | side, other side, sliding; or side, sliding                  | h_x f of the other side    |
+// | adding-sliding    | sliding, side, sliding; or sliding that touches its end      | h_x f of that side         |
+//
+// where the piece in the middle lasts no time. It is the surroundings that tell them apart: what is located are zeros
+// of contacts, of h_x f at the ends of segments, and of SlidingOnsetTest.
+
+class DefiningSystem;
+
+/// The name of the sliding bifurcation that a contact or a vanishing h_x f is, "" for what is none.
+std::string sliding_bifurcation(const TestedPoint& point, const UserPointKind& kind);
+
+/// Where a side's segment crosses the surface of a sliding mode into the other side: h_x f of the other side there, in
+/// the direction that leads on, positive while the orbit crosses. At its zero sliding begins. No event function of the
+/// orbit has it, as orbits that cross watch none that ends sliding.
+class SlidingOnsetTest final : public TestFunction {
+ public:
+  /// `segment` (from 0) ends on the surface; the next one has the other field. Beyond a falling zero the orbit violates
+  /// the model: `stop` ends the branch there.
+  SlidingOnsetTest(const DefiningSystem& system, int segment, const tchat_sliding& mode, bool stop);
+  std::string name() const override;
+  TestValue evaluate(const TestedPoint& point) const override;
+  SpecialPoint classify(const TestedPoint& point, bool rising) const override;
+
+ private:
+  int next() const { return (segment_ + 1) % system_.segments(); }
+  int field_after() const;
+  /// The event function that would end sliding here.
+  int event() const;
+
+  const DefiningSystem& system_;
+  int segment_;
+  const tchat_sliding& mode_;
+  bool stop_;
+};
 
 }  // namespace tchat

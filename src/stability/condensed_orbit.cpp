@@ -1,10 +1,59 @@
 #include "stability/condensed_orbit.hpp"
 
+#include <Eigen/LU>
+#include <Eigen/SVD>
 #include <cmath>
+#include <utility>
 
-#include "stability/orbit_forms.hpp"
+#include "orbit/mesh_adaptation.hpp"
 
 namespace tchat {
+
+using Complex = std::complex<double>;
+using Vector = Eigen::VectorXd;
+using ComplexVector = Eigen::VectorXcd;
+
+Vector OrbitForms::second(const Vector& u, const Vector& v) const {
+  NodalParts parts{};
+  parts[1] = &u, parts[2] = &v;
+  return expansion_.part(x_, parts, 3);
+}
+
+ComplexVector OrbitForms::second(const ComplexVector& u, const ComplexVector& v) const {
+  return bilinear([this](const Vector& a, const Vector& b) { return second(a, b); }, u, v);
+}
+
+Vector OrbitForms::third(const Vector& u, const Vector& v, const Vector& w) const {
+  NodalParts parts{};
+  parts[1] = &u, parts[2] = &v, parts[4] = &w;
+  return expansion_.part(x_, parts, 7);
+}
+
+ComplexVector OrbitForms::third(const ComplexVector& q) const {
+  return trilinear([this](const Vector& a, const Vector& b, const Vector& c) { return third(a, b, c); }, q);
+}
+
+/// With q = a + i b it is (a a a - 3 a b b) + i (3 a a b - b b b).
+ComplexVector OrbitForms::cube(const ComplexVector& q) const {
+  const Vector a = q.real(), b = q.imag();
+  ComplexVector result(q.size());
+  result.real() = third(a, a, a) - 3.0 * third(a, b, b);
+  result.imag() = 3.0 * third(a, a, b) - third(b, b, b);
+  return result;
+}
+
+bool is_fold(Complex critical) { return critical == Complex(1.0, 0.0); }
+double shift_for(Complex critical) { return is_fold(critical) ? -1.0 : 1.0; }
+
+Orbit on_every_second_point(const Orbit& x) {
+  Orbit coarse = x;
+  coarse.mesh.clear();
+  for (int j = 0; j < x.shape.intervals; j += 2) coarse.mesh.push_back(x.mesh[static_cast<std::size_t>(j)]);
+  coarse.mesh.push_back(1.0);
+  coarse.shape.intervals = static_cast<int>(coarse.mesh.size()) - 1;
+  coarse.states = interpolate_states(x.states, x.shape, x.mesh, coarse.shape, coarse.mesh);
+  return coarse;
+}
 
 namespace {
 
@@ -72,6 +121,133 @@ bool CondensedOrbit::correct(const Eigen::VectorXd& q, Orbit& x) {
     last = size;
   }
   return false;
+}
+
+namespace {
+
+template <class Solve>
+Eigen::VectorXcd by_parts(const Eigen::VectorXcd& right, const Solve& solve) {
+  Eigen::VectorXcd result(right.size());
+  result.real() = solve(Eigen::VectorXd(right.real()));
+  if (right.imag().isZero(0.0))
+    result.imag().setZero();
+  else
+    result.imag() = solve(Eigen::VectorXd(right.imag()));
+  return result;
+}
+
+/// x and a number g with A x + g column = right, row x = 0.
+template <class Number>
+Eigen::Matrix<Number, Eigen::Dynamic, 1> solve_bordered(const Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>& a,
+                                                        const Eigen::Matrix<Number, Eigen::Dynamic, 1>& column,
+                                                        const Eigen::Matrix<Number, Eigen::Dynamic, 1>& row,
+                                                        const Eigen::Matrix<Number, Eigen::Dynamic, 1>& right) {
+  const Eigen::Index n = a.rows();
+  Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic> matrix(n + 1, n + 1);
+  matrix << a, column, row.transpose(), Number(0.0);
+  Eigen::Matrix<Number, Eigen::Dynamic, 1> rights(n + 1);
+  rights << right, Number(0.0);
+  return matrix.partialPivLu().solve(rights).eval().head(n);
+}
+
+}  // namespace
+
+ShiftedOrbit::ShiftedOrbit(NodalSystem& nodal, const Orbit& x, double shift)
+    : nodal_(nodal), shift_(shift), n_(x.shape.dimension) {
+  regular_ = nodal_.factorize(x, shift);
+  if (!regular_) return;
+  closing_.resize(nodal_.size(), n_);
+  for (Eigen::Index k = 0; k < n_; ++k) closing_.col(k) = nodal_.solve(closing_rows(Vector(Vector::Unit(n_, k))));
+  starts_ = closing_.topRows(n_);
+  regular_ = closing_.allFinite();
+}
+
+ShiftedOrbit::Vector ShiftedOrbit::closing_rows(const Vector& q) const {
+  Vector rows = Vector::Zero(size());
+  rows.tail(n_) = q;
+  return rows;
+}
+
+ShiftedOrbit::ComplexVector ShiftedOrbit::closing_rows(const ComplexVector& q) const {
+  ComplexVector rows = ComplexVector::Zero(size());
+  rows.tail(n_) = q;
+  return rows;
+}
+
+ShiftedOrbit::ComplexVector ShiftedOrbit::solve(Complex mu, const ComplexVector& right) {
+  ComplexVector v = solve_real(right);
+  const Eigen::MatrixXcd matrix = Eigen::MatrixXcd::Identity(n_, n_) + (mu - shift_) * starts_;
+  const ComplexVector start = matrix.partialPivLu().solve(v.head(n_));
+  return v - (mu - shift_) * (closing_ * start);
+}
+
+ShiftedOrbit::Vector ShiftedOrbit::solve_beside(double mu, const Vector& right, const Vector& column, const Vector& q,
+                                                double& factor) {
+  const Vector v = nodal_.solve(right);
+  const Vector by_factor = nodal_.solve(column);
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n_ + 1, n_ + 1);
+  matrix.topLeftCorner(n_, n_) = Eigen::MatrixXd::Identity(n_, n_) + (mu - shift_) * starts_;
+  matrix.topRightCorner(n_, 1) = by_factor.head(n_);
+  matrix.bottomLeftCorner(1, n_) = q.transpose();
+  Vector start(n_ + 1);
+  start << v.head(n_), 0.0;
+  start = matrix.partialPivLu().solve(start);
+  factor = start(n_);
+  return v - factor * by_factor - (mu - shift_) * (closing_ * start.head(n_));
+}
+
+bool ShiftedOrbit::find_critical(Complex mu, ComplexVector& v, ComplexVector& w, Complex& multiplier) {
+  const std::optional<CriticalStart> found = critical_start(starts_, shift_, mu);
+  if (!found) return false;
+  multiplier = found->multiplier;
+  v = (shift_ - multiplier) * (closing_ * found->right);
+  ComplexVector start = ComplexVector::Zero(size());
+  start.head(n_) = found->left;
+  w = (shift_ - multiplier) * solve_real_adjoint(start);
+  return true;
+}
+
+ShiftedOrbit::ComplexVector ShiftedOrbit::solve_singular(Complex mu, const ComplexVector& right, const ComplexVector& p,
+                                                         const ComplexVector& q) {
+  const ComplexVector v = solve_real(right);
+  const Eigen::MatrixXcd matrix = Eigen::MatrixXcd::Identity(n_, n_) + (mu - shift_) * starts_;
+  const ComplexVector start = solve_bordered<Complex>(matrix, q, p, v.head(n_));
+  return v - (mu - shift_) * (closing_ * start);
+}
+
+std::optional<ShiftedOrbit::DoubleVectors> ShiftedOrbit::find_double(double mu) {
+  const double distance = mu - shift_;
+  const Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(n_, n_) + distance * starts_;
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  constexpr double singular = 1e-2;
+  const Vector& sizes = svd.singularValues();
+  if (n_ < 2 || !(sizes(n_ - 1) < singular * sizes(n_ - 2))) return std::nullopt;
+  Vector q = svd.matrixV().col(n_ - 1);
+  Vector p = svd.matrixU().col(n_ - 1);
+  Eigen::Index largest = 0;
+  q.cwiseAbs().maxCoeff(&largest);
+  if (q(largest) < 0.0) q = -q;
+  const Vector q1 = solve_bordered<double>(matrix, p, q, -starts_ * q);
+  p /= p.dot(q1);
+  Vector p1 = solve_bordered<double>(matrix.transpose(), q, p, -starts_.transpose() * p);
+  p1 -= p1.dot(q1) * p;
+  const auto weights = [this](const Vector& start) {
+    Vector right = Vector::Zero(size());
+    right.head(n_) = start;
+    return nodal_.solve_adjoint(right);
+  };
+  DoubleVectors found{-distance * (closing_ * q), -(closing_ * (q + distance * q1)), -distance * weights(p),
+                      -weights(p + distance * p1)};
+  const bool is_finite = found.v1.allFinite() && found.w.allFinite() && found.w1.allFinite();
+  return is_finite ? std::optional(std::move(found)) : std::nullopt;
+}
+
+ShiftedOrbit::ComplexVector ShiftedOrbit::solve_real(const ComplexVector& right) {
+  return by_parts(right, [&](const Vector& part) { return nodal_.solve(part); });
+}
+
+ShiftedOrbit::ComplexVector ShiftedOrbit::solve_real_adjoint(const ComplexVector& right) {
+  return by_parts(right, [&](const Vector& part) { return nodal_.solve_adjoint(part); });
 }
 
 }  // namespace tchat

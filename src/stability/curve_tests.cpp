@@ -1,10 +1,20 @@
 #include "stability/curve_tests.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <complex>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "orbit/admissibility.hpp"
+#include "orbit/condensed_system.hpp"
 #include "orbit/orbit.hpp"
+#include "stability/bifurcation_tests.hpp"
+#include "stability/normal_form.hpp"
 #include "stability/normal_form_text.hpp"
 
 namespace tchat {
@@ -186,6 +196,182 @@ TestList torus_curve_tests(const CriticalPair& pair) {
 
 std::unique_ptr<TestFunction> extremum_test(const StationaryMonitor& condition, std::string names) {
   return std::make_unique<ExtremumTest>(condition, std::move(names));
+}
+
+namespace {
+
+using Complex = std::complex<double>;
+
+/// e^(i theta) of the pair that a torus curve keeps on the circle.
+std::optional<Complex> critical(const CriticalPair* pair) {
+  if (pair == nullptr) return std::nullopt;
+  return pair->multiplier() / std::abs(pair->multiplier());
+}
+
+/// multiplier_product() without the factors of the critical pair of a torus curve, if there is one: 2 - 2 cos theta or
+/// 2 + 2 cos theta, which touch zero where its halves meet.
+TestValue product_beside(const TestedPoint& point, int target, const CriticalPair* pair) {
+  const TestValue product = multiplier_product(point, target);
+  if (pair == nullptr || !product.value) return product;
+  const double of_pair = 2.0 - 2.0 * target * pair->cosine();
+  constexpr double halves_meet = 1e-6;
+  if (!(of_pair > halves_meet)) return TestValue::undefined();
+  return TestValue::of(*product.value / of_pair, product.zero_level / of_pair);
+}
+
+/// A real multiplier 1 or -1 besides the critical ones.
+class SecondMultiplierTest final : public TestFunction {
+ public:
+  /// `pair`: of a torus curve, else null.
+  SecondMultiplierTest(PointType type, int target, const CriticalPair* pair = nullptr)
+      : type_(type), target_(target), pair_(pair) {}
+  std::string name() const override { return type_name(static_cast<int>(type_)); }
+  TestValue evaluate(const TestedPoint& point) const override { return product_beside(point, target_, pair_); }
+  bool is_genuine(const TestedPoint& point) const override { return is_multiplier_at(point, target_); }
+  SpecialPoint classify(const TestedPoint&, bool) const override {
+    return {type_, {}, false, fmt::format("a second critical multiplier: {}", target_)};
+  }
+
+ private:
+  PointType type_;
+  int target_;
+  const CriticalPair* pair_;
+};
+
+/// A complex pair on the unit circle besides the critical multipliers.
+class SecondPairTest final : public TestFunction {
+ public:
+  explicit SecondPairTest(PointType type, const CriticalPair* pair = nullptr) : type_(type), pair_(pair) {}
+  std::string name() const override { return type_name(static_cast<int>(type_)); }
+  TestValue evaluate(const TestedPoint& point) const override { return pair_distance(point, critical(pair_)); }
+  /// Rounding makes a complex pair of a double real multiplier.
+  bool is_genuine(const TestedPoint& point) const override {
+    constexpr double surely_complex = 1e-3;
+    const std::optional<Complex> mu = nearest_pair(point, critical(pair_));
+    return mu && mu->imag() > surely_complex;
+  }
+  SpecialPoint classify(const TestedPoint& point, bool) const override {
+    const std::optional<Complex> mu = nearest_pair(point, critical(pair_));
+    return {type_, {}, false, fmt::format("a critical pair, angle {:.10g}, besides", mu ? std::arg(*mu) : 0.0)};
+  }
+
+ private:
+  PointType type_;
+  const CriticalPair* pair_;
+};
+
+/// The coefficient of the cubic term, c or Re d. It has a pole where another multiplier passes 1, with which it is
+/// multiplied.
+class CubicTermTest final : public TestFunction {
+ public:
+  CubicTermTest(const DefiningSystem& system, PointType type, const CriticalPair* pair = nullptr)
+      : type_(type), pair_(pair), solver_(std::make_unique<NormalFormSolver>(system)) {}
+  std::string name() const override { return type_name(static_cast<int>(type_)); }
+  TestValue evaluate(const TestedPoint& point) const override {
+    const TestValue product = product_beside(point, 1, pair_);
+    if (!product.value || point.condition == nullptr || touching_segment(point) >= 0) return TestValue::undefined();
+    const std::optional<Coefficient> form = solver_->find(point.condensed, point.orbit, *point.condition);
+    if (!form) return TestValue::undefined();
+    const double factor = *product.value / (1.0 + std::abs(*product.value));
+    return TestValue::of(form->value * factor, form->uncertainty * std::abs(factor));
+  }
+  /// Where the other multiplier does not act on the critical one there is no pole, and what vanishes is the factor.
+  bool is_genuine(const TestedPoint& point) const override {
+    constexpr double surely_apart = 1e-5;
+    return multiplier_distance(point.multipliers, 1.0) > surely_apart;
+  }
+  SpecialPoint classify(const TestedPoint&, bool) const override {
+    return {type_, {}, false, pair_ == nullptr ? "the normal form's c is zero" : "the normal form's Re d is zero"};
+  }
+
+ private:
+  PointType type_;
+  const CriticalPair* pair_;
+  std::unique_ptr<NormalFormSolver> solver_;  // of any point: what it keeps is room
+};
+
+/// GPD on a curve of folds of doubled orbits: the halves of the orbits meet, and beyond they are exchanged. A sum of
+/// the differences of states where the halves begin goes through zero there with all of them. The curve of period
+/// doublings crosses, as its orbits twice over are folds of doubled orbits too.
+class HalvesMeetTest final : public TestFunction {
+ public:
+  /// `segments`: of the signature; a single one without a section is halved in time.
+  explicit HalvesMeetTest(int segments) : segments_(segments) {}
+  std::string name() const override { return type_name(static_cast<int>(PointType::doubled_fold_end)); }
+  TestValue evaluate(const TestedPoint& point) const override {
+    double sum = 0.0;
+    double weight = 1.0;
+    for_differences(point, [&](double difference) { sum += std::cos(weight++) * difference; });
+    return TestValue::of(sum / (1.0 + largest_state(point.orbit)), orbit_accuracy);
+  }
+  bool is_genuine(const TestedPoint& point) const override {
+    constexpr double met = 1e-4;
+    double largest = 0.0;
+    for_differences(point, [&](double difference) { largest = std::max(largest, std::abs(difference)); });
+    return largest <= met * (1.0 + largest_state(point.orbit));
+  }
+  SpecialPoint classify(const TestedPoint&, bool) const override {
+    return {PointType::doubled_fold_end, {}, true, "the halves of the doubled orbit meet: the curve begins there"};
+  }
+
+ private:
+  static double largest_state(const Orbit& x) { return x.states.cwiseAbs().maxCoeff(); }
+  template <class Work>
+  void for_differences(const TestedPoint& point, const Work& work) const {
+    const Orbit& x = point.orbit;
+    const int half = segments_ / 2;
+    for (int s = 0; s < half; ++s)
+      for (int a = 0; a < x.shape.dimension; ++a) work(x.node(s, 0)[a] - x.node(half + s, 0)[a]);
+    if (half == 0)
+      for (int a = 0; a < x.shape.dimension; ++a) work(x.node(0, 0)[a] - halfway(x, point.condensed.rule(), a));
+  }
+  /// State a at half the duration of the one segment.
+  static double halfway(const Orbit& x, const CollocationRule& rule, int a) {
+    const double* const mesh = x.mesh_of(0);
+    const int intervals = x.shape.intervals_of(0), c = x.shape.collocation;
+    const auto j = static_cast<int>(std::upper_bound(mesh, mesh + intervals, 0.5) - mesh) - 1;
+    std::array<double, CollocationRule::most_points + 1> basis{};
+    rule.basis((0.5 - mesh[j]) / (mesh[j + 1] - mesh[j]), basis.data(), nullptr);
+    double value = 0.0;
+    for (int i = 0; i <= c; ++i) value += basis[static_cast<std::size_t>(i)] * x.node(0, j * c + i)[a];
+    return value;
+  }
+
+  int segments_;
+};
+
+/// May the orbits be doubled ones: is the second half of the signature the first one again, or is there no section?
+bool may_be_doubled(const Signature& signature) {
+  if (signature.size() == 1) return signature.front().event == no_function;
+  const auto half = static_cast<std::ptrdiff_t>(signature.size() / 2);
+  return signature.size() % 2 == 0 && std::equal(signature.begin(), signature.begin() + half, signature.begin() + half);
+}
+
+}  // namespace
+
+TestList fold_curve_meetings(const DefiningSystem& system) {
+  TestList tests;
+  if (may_be_doubled(system.signature())) tests.push_back(std::make_unique<HalvesMeetTest>(system.segments()));
+  tests.push_back(std::make_unique<SecondMultiplierTest>(PointType::fold_and_doubling, -1));
+  tests.push_back(std::make_unique<SecondPairTest>(PointType::fold_and_torus));
+  return tests;
+}
+
+TestList doubling_curve_meetings(const DefiningSystem& system, bool coefficients) {
+  TestList tests;
+  tests.push_back(std::make_unique<SecondMultiplierTest>(PointType::doubling_and_fold, 1));
+  tests.push_back(std::make_unique<SecondPairTest>(PointType::doubling_and_torus));
+  if (coefficients) tests.push_back(std::make_unique<CubicTermTest>(system, PointType::generalized_doubling));
+  return tests;
+}
+
+TestList torus_curve_meetings(const DefiningSystem& system, const CriticalPair& pair, bool coefficients) {
+  TestList tests;
+  tests.push_back(std::make_unique<SecondMultiplierTest>(PointType::torus_and_fold, 1, &pair));
+  tests.push_back(std::make_unique<SecondMultiplierTest>(PointType::torus_and_doubling, -1, &pair));
+  tests.push_back(std::make_unique<SecondPairTest>(PointType::two_tori, &pair));
+  if (coefficients) tests.push_back(std::make_unique<CubicTermTest>(system, PointType::chenciner, &pair));
+  return tests;
 }
 
 }  // namespace tchat

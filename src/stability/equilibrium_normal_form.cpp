@@ -1,11 +1,50 @@
 #include "stability/equilibrium_normal_form.hpp"
 
 #include <cmath>
+#include <complex>
 
 #include "linear/dense_matrix.hpp"
-#include "stability/equilibrium_forms.hpp"
 
 namespace tchat {
+
+EquilibriumForms::EquilibriumForms(const DefiningSystem& system, const Orbit& x)
+    : system_(system), x_(x), states_(system.dimension_of(0)) {
+  const int n = system.dimension();
+  Eigen::VectorXd f(n);
+  Eigen::MatrixXd fx(n, n), fp(n, system.free_count());
+  system.system().first(FunctionKind::field, field_index(), x.end(0), x.par.data(), system.free_parameters(), f.data(),
+                        fx.data(), fp.data());
+  field_ = f.head(states_);
+  by_state_ = fx.topLeftCorner(states_, states_);
+  by_parameter_ = fp.col(0).head(states_);
+}
+
+Eigen::VectorXd EquilibriumForms::part(const std::array<const Eigen::VectorXd*, 3>& directions) const {
+  const int n = system_.dimension();
+  Eigen::MatrixXd parts = Eigen::MatrixXd::Zero(n, 8), values(n, 8);
+  parts.col(0) = Eigen::Map<const Eigen::VectorXd>(x_.end(0), n);
+  Eigen::Index wanted = 0;
+  for (std::size_t k = 0; k < directions.size(); ++k) {
+    if (directions[k] == nullptr) continue;
+    const Eigen::Index m = Eigen::Index{1} << k;
+    parts.col(m).head(states_) = *directions[k];
+    wanted += m;
+  }
+  system_.system().third(FunctionKind::field, field_index(), parts.data(), x_.par.data(), values.data());
+  return values.col(wanted).head(states_);
+}
+
+Eigen::VectorXd EquilibriumForms::second_with_parameter(const Eigen::VectorXd& u, const Eigen::VectorXd& v) const {
+  const int n = system_.dimension();
+  const int q = system_.free_count();
+  Eigen::VectorXd direction = Eigen::VectorXd::Zero(n + q), along(n);
+  direction.head(states_) = u.head(states_);
+  direction(n) = u(states_);
+  Eigen::MatrixXd by_state(n, n), by_parameter(n, q);
+  system_.system().second(FunctionKind::field, field_index(), x_.end(0), x_.par.data(), system_.free_parameters(),
+                          direction.data(), along.data(), by_state.data(), by_parameter.data());
+  return by_state.topLeftCorner(states_, states_) * v.head(states_) + by_parameter.col(0).head(states_) * v(states_);
+}
 
 namespace {
 
@@ -115,6 +154,27 @@ std::optional<BranchingForm> equilibrium_branching(const DefiningSystem& system,
   EquilibriumEquations equations(system);
   Orbit refined = x;
   return branching_form(equations, refined);
+}
+
+Coefficient first_lyapunov_coefficient(const DefiningSystem& system, const Orbit& x, double omega) {
+  using Vector = Eigen::VectorXd;
+  using ComplexVector = Eigen::VectorXcd;
+  const EquilibriumForms forms(system, x);
+  const Eigen::MatrixXd a = forms.jacobian();
+  const auto second = [&](const Vector& u, const Vector& v) { return forms.second(u, v); };
+  const auto third = [&](const Vector& u, const Vector& v, const Vector& w) { return forms.third(u, v, w); };
+  const ComplexVector q = eigenvector(a, {0.0, omega});
+  ComplexVector p = eigenvector(a.transpose(), {0.0, -omega});
+  p /= std::conj(p.dot(q));  // dot conjugates its first vector
+  const ComplexVector w = p.conjugate(), qbar = q.conjugate();
+  const ComplexVector mean = solve_shifted(a, 0.0, bilinear(second, q, qbar));
+  const ComplexVector twice = -solve_shifted(a, {0.0, 2.0 * omega}, bilinear(second, q, q));
+  const Product cubic = product(w, trilinear(third, q));
+  const Product by_mean = product(w, bilinear(second, q, mean));
+  const Product by_twice = product(w, bilinear(second, qbar, twice));
+  const std::complex<double> sum = cubic.value - 2.0 * by_mean.value + by_twice.value;
+  const double error = error_of_sums(system.system()) * (cubic.size + 2.0 * by_mean.size + by_twice.size);
+  return {sum.real() / (2.0 * omega), error / (2.0 * omega)};
 }
 
 }  // namespace tchat

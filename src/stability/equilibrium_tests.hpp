@@ -1,10 +1,40 @@
-/// Test functions of equilibria: Hopf bifurcation and boundary equilibrium. Fold and branch point are those of orbits
-/// (bifurcation_tests.hpp).
+/// Equilibria: eigenvalues of f_x, test functions on branches, and test functions on curves in two parameters.
 #pragma once
 
+#include "orbit/defining_system.hpp"
+#include "orbit/equilibrium_system.hpp"
 #include "stability/test_function.hpp"
 
 namespace tchat {
+
+// Eigenvalues of f_x at an equilibrium, in the place of the multipliers of an orbit.
+
+/// The n x n matrix f_x of the field of the one segment at the equilibrium x.
+Eigen::MatrixXd equilibrium_jacobian(const DefiningSystem& system, const Orbit& x);
+
+/// Of the states that the mode has. Those with the largest real part first; of a conjugate pair the one in the upper
+/// half plane first. Not valid where f_x is not finite.
+FloquetMultipliers equilibrium_eigenvalues(const DefiningSystem& system, const Orbit& x);
+
+/// Two eigenvalues and how far they are from a sum of zero.
+struct EigenvaluePair {
+  std::complex<double> first, second;
+  double distance = 1.0;  ///< |first + second| / (|first| + |second|)
+
+  /// i omega and -i omega, if the sum is zero; else two real eigenvalues of opposite sign (neutral saddle).
+  bool is_oscillation() const { return first.imag() != 0.0 && first == std::conj(second); }
+};
+
+/// The pair whose sum is nearest to zero, and the sign of the product of all sums of two: it changes where a pair is on
+/// the imaginary axis, and at a neutral saddle. No pair: distance 1, sign 1.
+struct HopfPairs {
+  EigenvaluePair nearest;
+  int sign = 1;
+};
+HopfPairs hopf_pairs(const std::vector<std::complex<double>>& eigenvalues);
+
+// Test functions of equilibria: Hopf bifurcation and boundary equilibrium. Fold and branch point are those of orbits
+// (bifurcation_tests.hpp).
 
 class DefiningSystem;
 
@@ -38,5 +68,21 @@ class BoundaryEquilibriumTest final : public TestFunction {
   int event_;
   bool stop_;
 };
+
+// Codimension-two points on curves of folds, Hopf bifurcations and boundary equilibria. The test functions of the
+// first two read the curve's condition, which must outlive them and is evaluated at the tested point. All are relative
+// and without poles.
+
+class DefiningSystem;
+
+/// CP, BT and ZH.
+TestList equilibrium_fold_tests(const EquilibriumFold& fold);
+
+/// BT, also where the curve meets its mirror image or omega passes 0; ZH and GH.
+TestList hopf_curve_tests(const HopfPair& pair);
+
+/// LP on a curve of boundary equilibria of `system`, which outlives it: f_x has the eigenvalue 0, and its range does
+/// not contain f_p for both parameters, as at a branch point.
+std::unique_ptr<TestFunction> zero_eigenvalue_test(const DefiningSystem& system);
 
 }  // namespace tchat

@@ -11,10 +11,8 @@
 #include "orbit/condensed_system.hpp"
 #include "settings/normal_form_note.hpp"
 #include "stability/equilibrium_normal_form.hpp"
-#include "stability/label_evidence.hpp"
-#include "stability/lyapunov_coefficient.hpp"
 #include "stability/normal_form.hpp"
-#include "stability/resonance_form.hpp"
+#include "stability/test_function.hpp"
 
 namespace tchat {
 

@@ -20,7 +20,7 @@ std::string fold_text(const TestedPoint& point);
 /// Of a branch point of periodic orbits or of equilibria in one parameter: transcritical or pitchfork.
 std::string branch_point_text(const TestedPoint& point);
 
-/// Of a point of codimension two on a curve of periodic orbits: cusp, or 1:1 to 1:4 resonance (resonance_form.hpp).
+/// Of a point of codimension two on a curve of periodic orbits: cusp, or 1:1 to 1:4 resonance (normal_form.hpp).
 std::string codimension_two_text(const TestedPoint& point, PointType type);
 
 /// Of a Hopf bifurcation of equilibria in one parameter with the eigenvalues +- i omega.

@@ -1,14 +1,48 @@
 #include "stability/return_map_forms.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <optional>
-
-#include "stability/critical_start.hpp"
 
 namespace tchat {
+
+namespace {
+
+constexpr double rounding_of_sums = 1e-13;  // of sums over all nodes, and of the vectors that solve sparse systems
+
+}  // namespace
+
+Product product(const Eigen::VectorXcd& w, const Eigen::VectorXcd& rows) {
+  return {(w.transpose() * rows)(0), w.cwiseAbs().dot(rows.cwiseAbs())};
+}
+
+double error_of_sums(const HybridSystem& system) {
+  if (system.has_third()) return rounding_of_sums;
+  constexpr double of_second = 1e-6, of_third = 1e-7;
+  return system.table().derivative_order < 2 ? of_second : of_third;
+}
+
+std::optional<CriticalStart> critical_start(const Eigen::MatrixXd& k, double mu_0, std::complex<double> wanted) {
+  const Eigen::EigenSolver<Eigen::MatrixXd> right(k), left(k.transpose());
+  if (right.info() != Eigen::Success || left.info() != Eigen::Success) return std::nullopt;
+  const auto nearest = [&](const Eigen::VectorXcd& values) {
+    Eigen::Index at = 0;
+    (values.array() - 1.0 / (mu_0 - wanted)).abs().minCoeff(&at);
+    return at;
+  };
+  const Eigen::Index at = nearest(right.eigenvalues());
+  constexpr double near = 1e-2;
+  CriticalStart found{mu_0 - 1.0 / right.eigenvalues()(at), right.eigenvectors().col(at),
+                      left.eigenvectors().col(nearest(left.eigenvalues()))};
+  if (!(std::abs(found.multiplier - wanted) < near)) return std::nullopt;
+  Eigen::Index largest = 0;
+  found.right.cwiseAbs().maxCoeff(&largest);
+  found.right *= std::abs(found.right(largest)) / found.right(largest) / found.right.norm();
+  found.left /= (found.left.transpose() * found.right).value();
+  return found.left.allFinite() ? std::optional(std::move(found)) : std::nullopt;
+}
 
 namespace {
 

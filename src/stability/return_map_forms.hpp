@@ -1,33 +1,97 @@
-/// Coefficients of normal forms from an orbit whose segments are condensed.
-///
-/// The equations of the whole orbit, M(mu) of return_map.hpp, are solved by way of S(mu), what is left of them at the
-/// ends of segments (return_map.hpp): of their elimination only the last connectivity depends on mu, and
-/// S(mu) = S(mu_0) + (mu - mu_0) E F', where F picks v_1(0) and E the last n rows. K = F' S(mu_0)^-1 E has the
-/// eigenvalues 1 / (mu_0 - mu) of the multipliers mu.
-///
-/// With V and W the vectors of the multiplier, on all nodes and rows, V_1(0) = q = a + i b and u_k = cos(phi_k) a +
-/// sin(phi_k) b, phi_k = k pi / 3,
-///
-///     B(q, q*) = 2/3 sum B(u_k, u_k),                    B(q, q) = 4/3 sum e^(2 i phi_k) B(u_k, u_k)
-///     C(q, q, q*) = 8/9 sum e^(i phi_k) C(u_k, u_k, u_k)                                  k = 0, 1, 2
-///
-/// so that three passes over the orbit give all that is needed, for a real q one. What W makes of B(V, .) is found as
-/// the gradient of a curve's condition is, by weighted second derivatives.
+/// Multilinear forms of a return map, from which coefficients of normal forms of orbits are computed.
 #pragma once
 
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <complex>
+#include <optional>
 #include <vector>
 
 #include "linear/sparse_lu.hpp"
+#include "model/hybrid_system.hpp"
 #include "orbit/condensed_system.hpp"
 #include "orbit/defining_system.hpp"
 #include "orbit/orbit_expansion.hpp"
 #include "orbit/return_map.hpp"
-#include "stability/multilinear.hpp"
 
 namespace tchat {
+
+// Sums over second and third derivatives of which coefficients of normal forms are made: of complex vectors from real
+// forms, and how well the sums are known.
+
+/// A real coefficient and how well it is known.
+struct Coefficient {
+  double value = 0.0;
+  double uncertainty = 0.0;
+};
+
+/// B(u, v) of complex vectors; `form` is B of real ones.
+template <class Form>
+Eigen::VectorXcd bilinear(const Form& form, const Eigen::VectorXcd& u, const Eigen::VectorXcd& v) {
+  const Eigen::VectorXd a = u.real(), b = u.imag(), c = v.real(), d = v.imag();
+  Eigen::VectorXcd result(u.size());
+  result.real() = form(a, c);
+  result.imag().setZero();
+  if (!d.isZero(0.0)) result.imag() += form(a, d);
+  if (!b.isZero(0.0)) result.imag() += form(b, c);
+  if (!b.isZero(0.0) && !d.isZero(0.0)) result.real() -= form(b, d);
+  return result;
+}
+
+/// C(q, q, q*); `form` is C of real vectors. With q = a + i b it is (a a a + a b b) + i (a a b + b b b).
+template <class Form>
+Eigen::VectorXcd trilinear(const Form& form, const Eigen::VectorXcd& q) {
+  const Eigen::VectorXd a = q.real(), b = q.imag();
+  Eigen::VectorXcd result(q.size());
+  result.real() = form(a, a, a);
+  result.imag().setZero();
+  if (b.isZero(0.0)) return result;
+  result.real() += form(a, b, b);
+  result.imag() = form(a, a, b) + form(b, b, b);
+  return result;
+}
+
+/// A sum of products, and the sum of their sizes, which rounding is a share of.
+struct Product {
+  std::complex<double> value;
+  double size = 0.0;
+};
+
+/// w^T rows, without conjugation.
+Product product(const Eigen::VectorXcd& w, const Eigen::VectorXcd& rows);
+
+/// The error of such sums as a share of their sizes: rounding, or that of differences. A problem without third
+/// derivatives may leave second ones of jumps to differences, too.
+double error_of_sums(const HybridSystem& system);
+
+// Where an orbit's critical vectors start, from the starts of its solutions for other multipliers.
+
+/// A q = mu q, p A = mu p of the return map's derivative A: |q| = 1, its entry of largest modulus positive, p q = 1.
+struct CriticalStart {
+  std::complex<double> multiplier;
+  Eigen::VectorXcd right;  ///< q
+  Eigen::VectorXcd left;   ///< p
+};
+
+/// Of the multiplier nearest to `wanted`, from K = (mu_0 - A)^-1, whose eigenvalues are 1 / (mu_0 - mu); nothing where
+/// there is none near it.
+std::optional<CriticalStart> critical_start(const Eigen::MatrixXd& k, double mu_0, std::complex<double> wanted);
+
+// Coefficients of normal forms from an orbit whose segments are condensed.
+//
+// The equations of the whole orbit, M(mu) of return_map.hpp, are solved by way of S(mu), what is left of them at the
+// ends of segments (return_map.hpp): of their elimination only the last connectivity depends on mu, and
+// S(mu) = S(mu_0) + (mu - mu_0) E F', where F picks v_1(0) and E the last n rows. K = F' S(mu_0)^-1 E has the
+// eigenvalues 1 / (mu_0 - mu) of the multipliers mu.
+//
+// With V and W the vectors of the multiplier, on all nodes and rows, V_1(0) = q = a + i b and u_k = cos(phi_k) a +
+// sin(phi_k) b, phi_k = k pi / 3,
+//
+//     B(q, q*) = 2/3 sum B(u_k, u_k),                    B(q, q) = 4/3 sum e^(2 i phi_k) B(u_k, u_k)
+//     C(q, q, q*) = 8/9 sum e^(i phi_k) C(u_k, u_k, u_k)                                  k = 0, 1, 2
+//
+// so that three passes over the orbit give all that is needed, for a real q one. What W makes of B(V, .) is found as
+// the gradient of a curve's condition is, by weighted second derivatives.
 
 class ReturnMapForms {
  public:

@@ -15,7 +15,7 @@
 #include "maps/invariant_curve.hpp"
 #include "motion/hybrid_simulation.hpp"
 #include "orbit/torus_system.hpp"
-#include "stability/torus_multipliers.hpp"
+#include "stability/floquet_multipliers.hpp"
 #include "support/test_system.hpp"
 
 namespace tchat::benchmark {

@@ -21,7 +21,7 @@
 #include "stability/impacting_orbits.hpp"
 #include "stability/langford.hpp"
 #include "stability/normal_form.hpp"
-#include "stability/torus_contact_condition.hpp"
+#include "stability/torus_contact.hpp"
 #include "support/branch_fixture.hpp"
 #include "support/linear_oscillator.hpp"
 #include "support/sharp_start.hpp"

@@ -4,7 +4,7 @@
 #include "continuation/solution_measure.hpp"
 #include "settings/family.hpp"
 #include "stability/normal_forms.hpp"
-#include "stability/user_value_test.hpp"
+#include "stability/test_function.hpp"
 #include "support/branch_fixture.hpp"
 #include "support/linear_oscillator.hpp"
 

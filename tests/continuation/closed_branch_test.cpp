@@ -6,7 +6,7 @@
 #include "continuation/closed_branch.hpp"
 #include "stability/bifurcation_tests.hpp"
 #include "stability/recorded_branch.hpp"
-#include "stability/user_value_test.hpp"
+#include "stability/test_function.hpp"
 #include "support/sampled_orbit.hpp"
 #include "support/test_system.hpp"
 

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "motion/orbit_flow.hpp"
-#include "stability/user_value_test.hpp"
+#include "stability/test_function.hpp"
 #include "support/branch_fixture.hpp"
 #include "support/linear_oscillator.hpp"
 #include "support/multiplier_sets.hpp"

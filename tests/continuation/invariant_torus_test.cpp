@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "continuation/planar_torus.hpp"
-#include "stability/torus_contact_condition.hpp"
-#include "stability/torus_multipliers.hpp"
+#include "stability/floquet_multipliers.hpp"
+#include "stability/torus_contact.hpp"
 
 using namespace tchat;
 using namespace tchat::test;

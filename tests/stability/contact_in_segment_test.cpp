@@ -1,6 +1,6 @@
 // Contact inside a segment. On the circle (cos theta, sin theta), theta' = 1, the event function is the trigonometric
 // polynomial h = a + b cos theta + c sin theta + d cos 2 theta (as cos^2 - sin^2), so that all its minima are known.
-#include "stability/contact_test.hpp"
+#include "stability/grazing_tests.hpp"
 
 #include <catch2/catch.hpp>
 

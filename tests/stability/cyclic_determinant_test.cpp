@@ -1,5 +1,5 @@
 // Determinants of block-cyclic systems against those of the whole matrix, and at numbers that doubles do not hold.
-#include "stability/cyclic_determinant.hpp"
+#include "stability/periodic_qz.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

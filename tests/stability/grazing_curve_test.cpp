@@ -1,5 +1,5 @@
 // Test functions on grazing curves: xi_n of the linear oscillator in closed form, multipliers of the smooth return map.
-#include "stability/grazing_curve_tests.hpp"
+#include "stability/grazing_tests.hpp"
 
 #include <catch2/catch.hpp>
 

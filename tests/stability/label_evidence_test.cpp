@@ -1,5 +1,5 @@
 // What is known of multipliers, and which changes of stability are certain.
-#include "stability/label_evidence.hpp"
+#include "stability/test_function.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "stability/locator.hpp"
+#include "stability/test_function.hpp"
 
 using namespace tchat;
 

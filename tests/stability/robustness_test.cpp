@@ -6,7 +6,7 @@
 #include "orbit/periodic_orbit_system.hpp"
 #include "recorded_branch.hpp"
 #include "stability/bifurcation_tests.hpp"
-#include "stability/contact_test.hpp"
+#include "stability/grazing_tests.hpp"
 
 using namespace tchat;
 using namespace tchat::test;

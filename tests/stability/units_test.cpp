@@ -4,8 +4,8 @@
 
 #include "normal_forms.hpp"
 #include "recorded_branch.hpp"
-#include "stability/contact_test.hpp"
-#include "stability/user_value_test.hpp"
+#include "stability/grazing_tests.hpp"
+#include "stability/test_function.hpp"
 
 using namespace tchat;
 using namespace tchat::test;

@@ -1,17 +1,179 @@
-#include "stability/grazing_curve_tests.hpp"
+#include "stability/grazing_tests.hpp"
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 
 #include "linear/dense_matrix.hpp"
 #include "model/event_at.hpp"
 #include "orbit/admissibility.hpp"
 #include "orbit/condensed_system.hpp"
+#include "orbit/orbit.hpp"
 #include "stability/bifurcation_tests.hpp"
-#include "stability/grazing_response.hpp"
 
 namespace tchat {
+
+ContactTest::ContactTest(const DefiningSystem& system, int segment, int event, bool stop)
+    : system_(system), segment_(segment), event_(event), stop_(stop) {}
+
+std::string ContactTest::name() const { return fmt::format("least h{} on segment {}", event_, segment_ + 1); }
+
+std::optional<EventMinimum> ContactTest::least(const TestedPoint& point) const {
+  return least_value(system_, point.condensed.rule(), point.orbit, segment_, event_);
+}
+
+/// Courses are in the order of segments.
+const EventCourse* ContactTest::known_course(const TestedPoint& point) const {
+  auto course = std::lower_bound(point.courses.begin(), point.courses.end(), segment_,
+                                 [](const EventCourse& one, int segment) { return one.segment < segment; });
+  for (; course != point.courses.end() && course->segment == segment_; ++course)
+    if (course->event == event_) return &*course;
+  return nullptr;
+}
+
+std::optional<double> ContactTest::least_h(const TestedPoint& point) const {
+  if (const EventCourse* const course = known_course(point))
+    return tchat::least_h(system_, point.condensed.rule(), point.orbit, *course);
+  const auto contact = least(point);
+  return contact ? std::optional(contact->value) : std::nullopt;
+}
+
+TestValue ContactTest::evaluate(const TestedPoint& point) const {
+  const std::optional<double> contact = least_h(point);
+  if (!contact) return TestValue::undefined(sign_without_minimum(point.orbit));
+  const EventCourse* const course = known_course(point);
+  const double scale = course != nullptr ? scale_of(system_.system(), point.orbit, *course)
+                                         : event_scale(system_.system(), point.orbit, event_);
+  return TestValue::of(*contact, orbit_accuracy * scale);
+}
+
+/// Between pinned ends h may rise and fall without a minimum in between: no contact, positive.
+int ContactTest::sign_without_minimum(const Orbit& x) const {
+  if (!(x.duration(segment_) > 0.0)) return 0;
+  for (int k = 1; k + 1 < x.shape.nodes_of(segment_); ++k)
+    if (system_.system().event(event_, x.node(segment_, k), x.par.data()) > 0.0) return 1;
+  return 0;
+}
+
+/// At an end of the segment h may pass zero with a slope: its surface is met there, where another event cuts the orbit.
+bool ContactTest::crosses(const TestedPoint& point, const EventMinimum& contact) const {
+  if (contact.tau > 0.0 && contact.tau < 1.0) return false;
+  const int field = system_.signature()[static_cast<std::size_t>(segment_)].field;
+  const EventAt at = event_at(system_.system(), event_, field, contact.state.data(), point.orbit.par.data());
+  return std::abs(at.rate()) > tangent_contact * at.sizes();
+}
+
+SpecialPoint ContactTest::vanishing_segment(bool ends_branch) const {
+  const int own = system_.signature()[static_cast<std::size_t>(segment_)].event;
+  const auto name = [this](int event) {
+    return fmt::format("event {} ({})", event, system_.system().function_name(FunctionKind::event, event));
+  };
+  return {PointType::user,
+          {UserPointKind::contact, segment_ + 1, event_, 1.0},
+          ends_branch,
+          fmt::format("two events at once: segment {}, which ends in {}, has shrunk to T = 0{}", segment_ + 1,
+                      name(own), own == event_ ? "" : " on the surface of " + name(event_))};
+}
+
+SpecialPoint ContactTest::classify(const TestedPoint& point, bool rising) const {
+  const std::optional<EventMinimum> contact = least(point);
+  const bool ends_branch = stop_ && !rising;
+  // Where the segment lasts no time every point of it is the contact.
+  if (lasts_no_time(point.orbit, segment_)) return vanishing_segment(ends_branch);
+  const std::string where = fmt::format("event {} ({}) inside segment {}", event_,
+                                        system_.system().function_name(FunctionKind::event, event_), segment_ + 1);
+  if (!contact)
+    return {PointType::user,
+            {UserPointKind::contact, segment_ + 1, event_, 0.0},
+            ends_branch,
+            "grazing: contact with " + where};
+  return {PointType::user,
+          {UserPointKind::contact, segment_ + 1, event_, contact->tau},
+          ends_branch,
+          fmt::format("{} with {}, tau = {:.10g}, {}",
+                      crosses(point, *contact) ? "two events at once: crossing" : "grazing: contact", where,
+                      contact->tau, state_text(system_.system(), point.orbit, contact->state.data()))};
+}
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// A matrix or vector as digits * 2^exponent, so that powers neither vanish nor overflow.
+struct ScaledMatrix {
+  MatrixXd digits;
+  double exponent = 0.0;
+
+  void normalise() {
+    const double size = digits.lpNorm<Eigen::Infinity>();
+    if (size == 0.0 || !std::isfinite(size)) return;
+    const int shift = std::ilogb(size);
+    digits *= std::ldexp(1.0, -shift);
+    exponent += shift;
+  }
+};
+
+ScaledMatrix scaled_product(const ScaledMatrix& a, const ScaledMatrix& b) {
+  ScaledMatrix result{a.digits * b.digits, a.exponent + b.exponent};
+  result.normalise();
+  return result;
+}
+
+/// A^n v by squaring A.
+ScaledMatrix power_times(ScaledMatrix a, int n, ScaledMatrix v) {
+  for (; n > 0; n /= 2) {
+    if (n % 2 == 1) v = scaled_product(a, v);
+    a = scaled_product(a, a);
+  }
+  return v;
+}
+
+/// Of before = A^(n-1) (beta and its errors).
+ImpactReturn one_more(const VectorXd& event_gradient, const MatrixXd& return_map, const ScaledMatrix& before) {
+  constexpr double smallest = -900.0;  // a sign that underflow would swallow is kept, at this size
+  constexpr double largest = 900.0;
+  const double size = std::ldexp(1.0, static_cast<int>(std::clamp(before.exponent, smallest, largest)));
+  return impact_return(event_gradient, size * before.digits, size * (return_map * before.digits));
+}
+
+}  // namespace
+
+MatrixXd ImpactDirection::with_errors() const {
+  MatrixXd columns(beta.size(), 1 + beta.size());
+  columns << beta, uncertainty * MatrixXd::Identity(beta.size(), beta.size());
+  return columns;
+}
+
+ImpactDirection impact_direction(const VectorXd& f, const VectorXd& section_gradient, const MatrixXd& jump_derivative) {
+  const VectorXd v = jump_derivative * f;
+  const double acceleration = section_gradient.dot(f);
+  const double terms =
+      jump_derivative.norm() * f.norm() * (1.0 + f.norm() * section_gradient.norm() / std::abs(acceleration));
+  return {v - f * (section_gradient.dot(v) / acceleration), orbit_accuracy * terms};
+}
+
+ImpactReturn impact_return(const VectorXd& event_gradient, const MatrixXd& before, const MatrixXd& last) {
+  const double of_powers = orbit_accuracy * std::max(before.col(0).norm(), last.col(0).norm());
+  const double of_beta = last.rightCols(last.cols() - 1).norm();
+  return {-event_gradient.dot(last.col(0)), event_gradient.norm() * (of_powers + of_beta)};
+}
+
+ImpactReturn impact_return(const VectorXd& event_gradient, const MatrixXd& return_map, const ImpactDirection& direction,
+                           int n) {
+  return one_more(event_gradient, return_map, power_times({return_map}, n - 1, {direction.with_errors()}));
+}
+
+std::vector<ImpactReturn> impact_returns(const VectorXd& event_gradient, const MatrixXd& return_map,
+                                         const ImpactDirection& direction, int count) {
+  std::vector<ImpactReturn> result;
+  ScaledMatrix turned{direction.with_errors()};
+  for (int n = 1; n <= count; ++n) {
+    result.push_back(one_more(event_gradient, return_map, turned));
+    turned = scaled_product({return_map}, turned);
+  }
+  return result;
+}
 
 namespace {
 
