@@ -1,12 +1,16 @@
-/// Invariant tori: an odd number of orbits of one return each.
+/// Invariant tori: an odd number of orbits of one return each; the analysis of their branches and their problem types.
 #include <fmt/format.h>
 
 #include "base/user_error.hpp"
 #include "files/orbit_trace.hpp"
 #include "kinds/families.hpp"
-#include "kinds/segment_family.hpp"
-#include "kinds/torus_check.hpp"
+#include "kinds/verify_solutions.hpp"
+#include "orbit/torus_system.hpp"
+#include "run/branch_setup.hpp"
+#include "run/torus_start.hpp"
 #include "settings/problem_type.hpp"
+#include "stability/bifurcation_tests.hpp"
+#include "stability/floquet_multipliers.hpp"
 
 namespace tchat {
 
@@ -126,6 +130,73 @@ class TorusFamily final : public SegmentFamily {
 const SolutionFamily& torus_family() {
   static const TorusFamily family;
   return family;
+}
+
+namespace {
+
+class TorusAnalysis final : public RingAnalysis {
+ public:
+  TorusAnalysis(const TorusSystem& system, const OrbitShape& shape) : RingAnalysis(system, shape), system_(system) {}
+
+  const FamilyFacts& facts() const override { return torus_family().facts(); }
+  /// Those along the rotation, by their moduli.
+  void find_multipliers(const CondensedSystem& condensed, const Orbit& x, FloquetMultipliers& result) override {
+    result = torus_multipliers(system_, condensed, x);
+  }
+  SpecialPoint shrunk(const Orbit& x) const override {
+    return {PointType::torus,
+            {},
+            false,
+            fmt::format(
+                "the torus has shrunk to a periodic orbit, {}: its torus bifurcation, where the branch of tori ends",
+                state_text(system_.system(), x, x.start(0)))};
+  }
+  std::string tendency(const Orbit&, const PeriodGrowth&, const std::string&) const override { return ""; }
+
+ private:
+  const TorusSystem& system_;
+};
+
+}  // namespace
+
+std::unique_ptr<BranchAnalysis> TorusSystem::make_analysis(const OrbitShape& shape) const {
+  return std::make_unique<TorusAnalysis>(*this, shape);
+}
+
+// The problem types of invariant tori (IPS = 182) and of tori in grazing contact (IPS = 152): the equations are those
+// of orbit/torus_system.hpp (dissertation, 2.4, 3.3, 4.3). rho may be one of the free parameters.
+
+namespace {
+
+ProblemFacts torus_facts(const ProblemId& id, const char* solutions, const char* title, int free_parameters) {
+  return {.number = id.number,
+          .branch_mode = id.branch_mode,
+          .curve = 0,
+          .family = torus_family,
+          .solutions = solutions,
+          .title = title,
+          .free_parameters = free_parameters,
+          .in_two_parameters = free_parameters > 2,  // a family has two itself, rho among them
+          .switches_branch = id.branch_mode < 0};
+}
+
+}  // namespace
+
+std::vector<const ProblemType*> torus_types() {
+  static const TorusProblem tori(torus_facts(invariant_torus, "invariant tori",
+                                             "invariant tori, rho and one parameter free, or two with rho fixed", 2),
+                                 free_torus);
+  ProblemFacts births_at_torus =
+      torus_facts(torus_birth, "invariant tori", "the torus that is born at a TR label of periodic orbits", 2);
+  births_at_torus.starts_from = periodic_orbit.number;
+  births_at_torus.start_words = "'ICP=[{},rho]'";
+  static const SwitchRow births(births_at_torus, {PointType::torus}, begin_torus);
+  ProblemFacts grazing =
+      torus_facts(grazing_torus, "invariant tori in grazing contact",
+                  "invariant tori in grazing contact, rho and two parameters free, or three with rho fixed", 3);
+  grazing.stability = StabilityMeaning::without_contact;
+  static const TorusProblem in_contact(grazing, touching_torus);
+  return {&tori, &births, &in_contact};
 }
 
 }  // namespace tchat

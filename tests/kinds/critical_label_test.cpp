@@ -1,5 +1,5 @@
 // Which multipliers a label must have.
-#include "kinds/critical_label.hpp"
+#include "kinds/verify_solutions.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Multipliers of return maps against plain products, and where a product does not exist.
-#include "kinds/return_pencil.hpp"
+#include "kinds/orbit_check.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

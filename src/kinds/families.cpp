@@ -1,4 +1,4 @@
-#include "kinds/ring_analysis.hpp"
+#include "kinds/families.hpp"
 
 #include <fmt/format.h>
 
@@ -6,15 +6,57 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/user_error.hpp"
 #include "continuation/branch_limits.hpp"
 #include "continuation/homoclinic_limit.hpp"
-#include "kinds/families.hpp"
+#include "files/orbit_trace.hpp"
+#include "kinds/orbit_check.hpp"
 #include "model/identity_jump.hpp"
 #include "orbit/ring_system.hpp"
+#include "settings/run_settings.hpp"
 #include "stability/bifurcation_tests.hpp"
 #include "stability/equilibrium_tests.hpp"
 
 namespace tchat {
+
+std::span<const ProblemType* const> problem_types() {
+  static const std::vector<const ProblemType*> all = [] {
+    std::vector<const ProblemType*> list;
+    for (const auto& types :
+         {periodic_orbit_types(), grazing_types(), torus_types(), boundary_value_types(), equilibrium_types()})
+      list.insert(list.end(), types.begin(), types.end());
+    return list;
+  }();
+  return all;
+}
+
+// What most families do.
+
+std::string SolutionFamily::mismatch(const LabelledSolution& label, const RunSettings& settings) const {
+  const auto states = static_cast<Eigen::Index>(settings.segments.size()) * settings.dimension;
+  if (!is_same_problem_type(label.problem_type, settings.problem_type))
+    return fmt::format("computed with IPS = {}, the constants have {}", label.problem_type, settings.problem_type);
+  if (label.states.rows() == states) return "";
+  return fmt::format("has {} states, the constants {} segments of {}", label.states.rows(), settings.segments.size(),
+                     settings.dimension);
+}
+
+OrbitTrace SolutionFamily::trace(const LabelledSolution& label, const std::string& name, int dimension,
+                                 const std::string& path) const {
+  return orbit_trace(label, name, dimension, path);
+}
+
+OrbitTrace SolutionFamily::section_trace(const LabelledSolution& label, const std::string&, int,
+                                         const std::string& path) const {
+  throw UserError(
+      fmt::format("--section: label {} of {} is no torus (IPS = {}), and its orbit no curve on a section; leave "
+                  "--section out",
+                  label.label, path, label.problem_type));
+}
+
+std::map<int, LineKind> SolutionFamily::label_kinds(const std::string& solution_path) const {
+  return tchat::label_kinds(solution_path);
+}
 
 namespace {
 
