@@ -12,7 +12,6 @@
 #include "base/warnings.hpp"
 #include "files/run_files.hpp"
 #include "settings/constants_file.hpp"
-#include "settings/constants_guide.hpp"
 #include "settings/constants_writer.hpp"
 
 namespace tchat {

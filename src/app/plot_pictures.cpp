@@ -21,7 +21,6 @@
 #include "plot/orbit_figure.hpp"
 #include "plot/underlay.hpp"
 #include "settings/constant_value.hpp"
-#include "settings/family.hpp"
 #include "settings/problem_type.hpp"
 
 namespace tchat {

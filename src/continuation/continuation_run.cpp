@@ -11,7 +11,7 @@
 #include "orbit/defining_system.hpp"
 #include "orbit/mesh_adaptation.hpp"
 #include "orbit/orbit.hpp"
-#include "settings/family.hpp"
+#include "settings/problem_type.hpp"
 #include "stability/bifurcation_tests.hpp"
 
 namespace tchat {

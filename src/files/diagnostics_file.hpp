@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "files/point_file.hpp"
-#include "settings/normal_form_note.hpp"
+#include "settings/point_type.hpp"
 
 namespace tchat {
 

@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "files/auto_format.hpp"
-#include "settings/family.hpp"
 #include "settings/point_type.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"

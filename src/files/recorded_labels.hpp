@@ -8,7 +8,7 @@
 
 #include "files/point_file.hpp"
 #include "files/solution_file_reader.hpp"
-#include "settings/normal_form_note.hpp"
+#include "settings/point_type.hpp"
 
 namespace tchat {
 

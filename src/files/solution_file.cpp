@@ -12,7 +12,7 @@
 #include "base/words.hpp"
 #include "files/auto_format.hpp"
 #include "settings/constant_value.hpp"
-#include "settings/family.hpp"
+#include "settings/problem_type.hpp"
 
 namespace tchat {
 

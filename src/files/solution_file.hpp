@@ -14,7 +14,6 @@
 
 #include "model/parameter_layout.hpp"
 #include "settings/point_type.hpp"
-#include "settings/problem_id.hpp"
 #include "settings/problem_type.hpp"
 
 namespace tchat {

@@ -17,7 +17,6 @@
 #include "files/solution_file.hpp"
 #include "model/parameter_vector.hpp"
 #include "settings/constant_value.hpp"
-#include "settings/family.hpp"
 #include "settings/problem_type.hpp"
 
 namespace tchat {

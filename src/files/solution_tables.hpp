@@ -18,7 +18,7 @@ namespace tchat {
 //     normal_form  coefficient  uncertainty  verdict  kind
 //         type in letters; name as IRS knows it (GR1), several with a blank between; problem_type is IPS,
 //         branch_mode ISW; free: the names of the free parameters, with commas between; kind in words;
-//         normal_form: the name of the coefficient (settings/normal_form_note.hpp)
+//         normal_form: the name of the coefficient (settings/point_type.hpp)
 //     the parameters by their names: those with a name, those that are not zero, durations
 //
 // Not known: stable without a p-file and along curves of special points, admissible and a normal form without a

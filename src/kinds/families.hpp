@@ -7,7 +7,6 @@
 #include "files/solution_file.hpp"
 #include "orbit/defining_system.hpp"
 #include "run/data_start.hpp"
-#include "settings/family.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"
 #include "stability/floquet_multipliers.hpp"

@@ -8,7 +8,7 @@
 
 #include "kinds/segment_check.hpp"
 #include "orbit/orbit.hpp"
-#include "settings/family.hpp"
+#include "settings/problem_type.hpp"
 #include "settings/run_settings.hpp"
 
 namespace tchat {

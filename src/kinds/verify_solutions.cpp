@@ -31,7 +31,7 @@
 #include "settings/constants_file.hpp"
 #include "settings/point_type.hpp"
 #include "settings/problem_type.hpp"
-#include "settings/recorded_problem.hpp"
+#include "settings/run_settings.hpp"
 #include "settings/settings_type.hpp"
 #include "stability/floquet_multipliers.hpp"
 

@@ -22,7 +22,7 @@
 #include "resegment/empty_segments.hpp"
 #include "run/torus_start.hpp"
 #include "settings/constants_file.hpp"
-#include "settings/family.hpp"
+#include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"
 #include "simulate/simulation_start.hpp"
 

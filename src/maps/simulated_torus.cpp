@@ -21,7 +21,7 @@
 #include "run/orbit_start.hpp"
 #include "run/run_remarks.hpp"
 #include "settings/constants_writer.hpp"
-#include "settings/recorded_problem.hpp"
+#include "settings/run_settings.hpp"
 #include "settings/settings_type.hpp"
 #include "simulate/loaded_problem.hpp"
 #include "simulate/orbit_hand_over.hpp"

@@ -14,7 +14,6 @@
 #include "files/solution_file.hpp"
 #include "plot/branch_quantity.hpp"
 #include "settings/constants_file.hpp"
-#include "settings/family.hpp"
 #include "settings/point_type.hpp"
 #include "settings/problem_type.hpp"
 

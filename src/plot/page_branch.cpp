@@ -21,11 +21,9 @@
 #include "plot/page_figure.hpp"
 #include "plugin/plugin_build.hpp"
 #include "settings/constants_file.hpp"
-#include "settings/family.hpp"
-#include "settings/normal_form_note.hpp"
 #include "settings/point_type.hpp"
 #include "settings/problem_type.hpp"
-#include "settings/recorded_problem.hpp"
+#include "settings/run_settings.hpp"
 
 namespace tchat {
 

@@ -7,7 +7,7 @@
 #include "model/hybrid_system.hpp"
 #include "orbit/monitor.hpp"
 #include "settings/run_settings.hpp"
-#include "settings/settings_names.hpp"
+#include "settings/settings_check.hpp"
 
 namespace tchat {
 

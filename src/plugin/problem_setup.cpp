@@ -14,7 +14,6 @@
 #include "orbit/quantity.hpp"
 #include "plugin/named_parameters.hpp"
 #include "settings/constants_file.hpp"
-#include "settings/family.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "model/parameter_layout.hpp"
-#include "settings/family.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"
 

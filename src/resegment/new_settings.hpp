@@ -4,7 +4,7 @@
 
 #include "model/hybrid_system.hpp"
 #include "resegment/segment_list.hpp"
-#include "settings/problem_id.hpp"
+#include "settings/problem_type.hpp"
 #include "settings/run_settings.hpp"
 
 namespace tchat {

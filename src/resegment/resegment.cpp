@@ -31,11 +31,10 @@
 #include "settings/constant_value.hpp"
 #include "settings/constants_file.hpp"
 #include "settings/constants_writer.hpp"
-#include "settings/family.hpp"
 #include "settings/keyword_form.hpp"
 #include "settings/point_type.hpp"
 #include "settings/problem_type.hpp"
-#include "settings/recorded_problem.hpp"
+#include "settings/run_settings.hpp"
 #include "settings/settings_type.hpp"
 
 namespace tchat {

@@ -11,7 +11,7 @@
 #include "files/point_file.hpp"
 #include "files/solution_file.hpp"
 #include "run/orbit_start.hpp"
-#include "settings/family.hpp"
+#include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"
 #include "stability/grazing_tests.hpp"
 

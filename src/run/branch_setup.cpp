@@ -6,7 +6,7 @@
 
 #include "files/solution_file.hpp"
 #include "orbit/mesh_adaptation.hpp"
-#include "settings/family.hpp"
+#include "settings/problem_type.hpp"
 
 namespace tchat {
 

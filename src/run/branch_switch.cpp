@@ -10,7 +10,6 @@
 #include "base/user_error.hpp"
 #include "files/solution_file.hpp"
 #include "orbit/curve_conditions.hpp"
-#include "settings/family.hpp"
 #include "settings/point_type.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"

@@ -14,8 +14,8 @@
 #include "files/solution_file.hpp"
 #include "model/parameter_vector.hpp"
 #include "run/solver_settings.hpp"
-#include "settings/family.hpp"
 #include "settings/point_type.hpp"
+#include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"
 
 namespace tchat {

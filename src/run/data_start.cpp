@@ -18,7 +18,7 @@
 #include "plugin/problem_library.hpp"
 #include "plugin/problem_setup.hpp"
 #include "settings/constants_file.hpp"
-#include "settings/recorded_problem.hpp"
+#include "settings/run_settings.hpp"
 #include "settings/settings_type.hpp"
 
 namespace tchat {

@@ -21,7 +21,6 @@
 #include "run/branch_switch.hpp"
 #include "run/run_remarks.hpp"
 #include "run/solver_settings.hpp"
-#include "settings/family.hpp"
 #include "settings/point_type.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"

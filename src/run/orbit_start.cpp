@@ -12,7 +12,6 @@
 #include "files/solution_file_reader.hpp"
 #include "orbit/mesh_adaptation.hpp"
 #include "settings/constants_table.hpp"
-#include "settings/family.hpp"
 #include "settings/point_type.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"

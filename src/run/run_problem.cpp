@@ -24,10 +24,9 @@
 #include "run/solver_settings.hpp"
 #include "settings/constants_file.hpp"
 #include "settings/constants_writer.hpp"
-#include "settings/family.hpp"
 #include "settings/point_type.hpp"
 #include "settings/problem_type.hpp"
-#include "settings/recorded_problem.hpp"
+#include "settings/run_settings.hpp"
 #include "settings/settings_type.hpp"
 
 namespace tchat {

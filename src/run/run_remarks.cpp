@@ -17,7 +17,6 @@
 #include "plugin/named_parameters.hpp"
 #include "plugin/plugin_build.hpp"
 #include "settings/constants_file.hpp"
-#include "settings/family.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"
 

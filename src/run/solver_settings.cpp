@@ -11,7 +11,6 @@
 #include "base/user_error.hpp"
 #include "model/identity_jump.hpp"
 #include "plugin/named_parameters.hpp"
-#include "settings/family.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"
 #include "stability/bifurcation_tests.hpp"

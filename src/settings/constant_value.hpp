@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "settings/constants_table.hpp"
-#include "settings/place.hpp"
+#include "settings/run_settings.hpp"
 
 namespace tchat {
 

@@ -1,8 +1,4 @@
-/// Constants files gc.NAME: reading either form and KEY=VALUE overrides into checked RunSettings.
-///
-/// The first non-blank character tells the form: a digit, a sign or a point begins the positional form
-/// (positional_form.hpp), anything else `KEY = value` lines with defaults (keyword_form.hpp). CRLF and a missing final
-/// newline are fine. All functions throw UserError: place, constant, meaning, what was found, what is allowed, example.
+/// Constants files in either form, and the reader of the positional one.
 #pragma once
 
 #include <span>
@@ -13,6 +9,23 @@
 #include "settings/settings_draft.hpp"
 
 namespace tchat {
+
+// The positional form: records of values, list-directed, in the order of the table.
+//
+// Values are separated by blanks, one comma or newlines; `r*v` stands for r times v; when a record has its values the
+// rest of the line is commentary; the next record begins on the next line that is not blank. Null values (two commas,
+// `r*` without a value) and `/` are refused. After the last record: `KEY = value` lines of extension constants,
+// comments (#), and other text, which is ignored with a warning unless it begins with a number or a keyword.
+
+/// Reads a whole text into a draft. `source` is the file's name in messages. Throws UserError.
+void read_positional_form(std::string_view text, const std::string& source, SettingsDraft& draft, Warnings* warnings);
+
+// Constants files gc.NAME: reading either form and KEY=VALUE overrides into checked RunSettings.
+//
+// The first non-blank character tells the form: a digit, a sign or a point begins the positional form
+// (read_positional_form()), anything else `KEY = value` lines with defaults (keyword_form.hpp). CRLF and a missing
+// final newline are fine. All functions throw UserError: place, constant, meaning, what was found, what is allowed,
+// example.
 
 /// `warnings`, if not null, receives sentences about what is accepted without effect. Names of parameters are kept as
 /// they are (RunSettings::names) until resolve_names().

@@ -1,15 +1,18 @@
-/// Names of the points of a branch: AUTO's two-letter types, and our own GR and XI which files carry as UZ.
-///
-/// On two-parameter curves the type number has a tens digit (the curve being followed): it is dropped, the sign kept,
-/// but for AUTO's codimension-two codes 23, 83, 28, 78, 77, 87, 88.
+/// The types of points of a branch, and what a label reports of its normal form.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace tchat {
+
+// Names of the points of a branch: AUTO's two-letter types, and our own GR and XI which files carry as UZ.
+//
+// On two-parameter curves the type number has a tens digit (the curve being followed): it is dropped, the sign kept,
+// but for AUTO's codimension-two codes 23, 83, 28, 78, 77, 87, 88.
 
 /// Type numbers of AUTO (src/docs/files.md); on two-parameter curves the file adds a tens digit.
 /// A new type of points on curves of one kind takes a number that has the curve's digit already, as -32 has, and ends
@@ -127,5 +130,25 @@ std::vector<std::string> type_names(int type, const UserPointKind& kind, const s
 /// What a UZ label is, in words: "contact inside segment 1, event function 2, tau = 0.5"; "" for kind none. `parameter`
 /// is the name of the one whose value the user asked for, PAR(index) when empty.
 std::string description(const UserPointKind& kind, const std::string& parameter = "");
+
+// What a label says of its normal form, as a sentence and as data.
+//
+//     normal form NAME = VALUE +- UNCERTAINTY[, VERDICT[: or ; EXPLANATION]]
+
+struct NormalFormNote {
+  std::string name;  ///< of the coefficient: a, c, Re d, l_1
+  double value = 0.0;
+  double uncertainty = 0.0;
+  std::string verdict = {};  ///< "supercritical", "subcritical", "transcritical", ...; "" where there is none to say
+
+  /// Is what is born unstable, beside the stable solution that it is born from?
+  bool is_subcritical() const { return verdict.starts_with("subcritical"); }
+};
+
+/// `explanation`, where there is one, begins with ':' or ';'.
+std::string format_normal_form(const NormalFormNote& note, std::string_view explanation);
+
+/// The sentence in a line that may have others before and behind it, separated by "; ". Nothing where there is none.
+std::optional<NormalFormNote> parse_normal_form(std::string_view line);
 
 }  // namespace tchat

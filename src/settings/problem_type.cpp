@@ -6,7 +6,6 @@
 #include <cstdlib>
 
 #include "base/user_error.hpp"
-#include "settings/family.hpp"
 #include "settings/point_type.hpp"
 
 namespace tchat {

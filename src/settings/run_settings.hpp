@@ -1,6 +1,4 @@
-/// What one run is asked to do: the contents of a constants file under names of their own.
-///
-/// The keywords of the file (NTST, GCHGRZIND, ...) appear only in src/settings; each member below names its keyword.
+/// The contents of a constants file under names of their own, and where in the text they were read.
 #pragma once
 
 #include <optional>
@@ -10,10 +8,22 @@
 
 #include "model/index_vector.hpp"
 #include "model/parameter_layout.hpp"
-#include "settings/place.hpp"
-#include "settings/problem_id.hpp"
+#include "settings/problem_type.hpp"
 
 namespace tchat {
+
+// A place in a constants file or on the command line.
+
+struct Place {
+  std::string source;
+  int line = 0;             ///< 0: the source has no lines (the command line)
+  bool positional = false;  ///< in the positional form: examples show whole records
+  std::string text() const;
+};
+
+// What one run is asked to do: the contents of a constants file under names of their own.
+//
+// The keywords of the file (NTST, GCHGRZIND, ...) appear only in src/settings; each member below names its keyword.
 
 /// A solution to restart from: label `number`, or the `number`-th solution of a type ("PD1": type "PD", number 1).
 struct StartLabel {
@@ -170,5 +180,14 @@ inline constexpr std::size_t max_names = 1000;
 inline bool is_name(const RunSettings& settings, int k) {
   return k >= first_name && k < name_index(settings.names.size());
 }
+
+// The problem that constants name (PROBLEM), so that commands on the files of a run need no -p.
+
+/// The problem as a name or path from the current folder; `constants`: path of the file that the settings are from.
+/// Nothing where they name none.
+std::optional<std::string> recorded_problem(const RunSettings& settings, const std::string& constants);
+
+/// PROBLEM of constants that are written to the path `constants`, for a problem named from the current folder.
+std::string problem_to_record(const std::string& problem, const std::string& constants);
 
 }  // namespace tchat

@@ -9,7 +9,6 @@
 #include "base/number.hpp"
 #include "base/user_error.hpp"
 #include "base/words.hpp"
-#include "settings/family.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/settings_check.hpp"
 #include "settings/settings_type.hpp"

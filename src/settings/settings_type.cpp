@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "base/user_error.hpp"
-#include "settings/family.hpp"
 #include "settings/problem_type.hpp"
 
 namespace tchat {

@@ -16,7 +16,7 @@
 #include "motion/found_orbit.hpp"
 #include "plugin/named_parameters.hpp"
 #include "settings/constants_writer.hpp"
-#include "settings/recorded_problem.hpp"
+#include "settings/run_settings.hpp"
 #include "simulate/exponent_measurement.hpp"
 #include "simulate/loaded_problem.hpp"
 #include "simulate/orbit_hand_over.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "orbit/condensed_system.hpp"
-#include "settings/normal_form_note.hpp"
+#include "settings/point_type.hpp"
 #include "stability/equilibrium_normal_form.hpp"
 #include "stability/normal_form.hpp"
 #include "stability/test_function.hpp"

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "continuation/solution_measure.hpp"
-#include "settings/family.hpp"
+#include "settings/problem_type.hpp"
 #include "stability/normal_forms.hpp"
 #include "stability/test_function.hpp"
 #include "support/branch_fixture.hpp"

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "settings/problem_id.hpp"
+#include "settings/problem_type.hpp"
 
 using namespace tchat;
 using Eigen::MatrixXd;

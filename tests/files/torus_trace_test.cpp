@@ -6,7 +6,7 @@
 #include "base/user_error.hpp"
 #include "files/orbit_trace.hpp"
 #include "model/parameter_vector.hpp"
-#include "settings/problem_id.hpp"
+#include "settings/problem_type.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace tchat;

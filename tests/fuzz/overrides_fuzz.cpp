@@ -6,7 +6,7 @@
 #include "fuzz_target.hpp"
 #include "settings/constants_file.hpp"
 #include "settings/constants_writer.hpp"
-#include "settings/settings_names.hpp"
+#include "settings/settings_check.hpp"
 
 using namespace tchat;
 

@@ -6,7 +6,6 @@
 #include "files/solution_file.hpp"
 #include "orbit/orbit.hpp"
 #include "run/orbit_start.hpp"
-#include "settings/family.hpp"
 #include "settings/point_type.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "settings/family.hpp"
 #include "settings/point_type.hpp"
 #include "settings/problem_type.hpp"
 

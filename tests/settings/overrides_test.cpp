@@ -4,7 +4,7 @@
 #include "settings/constants_file.hpp"
 #include "settings/constants_writer.hpp"
 #include "settings/sample_files.hpp"
-#include "settings/settings_names.hpp"
+#include "settings/settings_check.hpp"
 
 using namespace tchat;
 using Ints = std::vector<int>;

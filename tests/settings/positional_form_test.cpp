@@ -5,7 +5,7 @@
 #include "base/user_error.hpp"
 #include "settings/constants_file.hpp"
 #include "settings/sample_files.hpp"
-#include "settings/settings_names.hpp"
+#include "settings/settings_check.hpp"
 #include "settings/settings_type.hpp"
 
 using namespace tchat;

@@ -1,4 +1,4 @@
-#include "settings/recorded_problem.hpp"
+#include "settings/run_settings.hpp"
 
 #include <filesystem>
 
