@@ -17,9 +17,9 @@
 #include "kinds/conservation_check.hpp"
 #include "model/derivative_check.hpp"
 #include "model/parameter_vector.hpp"
+#include "plugin/cpp_writer.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
-#include "plugin/translation.hpp"
 #include "settings/constants_file.hpp"
 #include "settings/settings_type.hpp"
 

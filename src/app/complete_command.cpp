@@ -17,7 +17,7 @@
 #include "base/user_error.hpp"
 #include "files/auto_format.hpp"
 #include "files/solution_file_reader.hpp"
-#include "plugin/source_names.hpp"
+#include "plugin/problem_setup.hpp"
 #include "settings/constants_table.hpp"
 
 namespace tchat {

@@ -11,7 +11,6 @@
 #include <optional>
 
 #include "plugin/exit_guard.hpp"
-#include "plugin/signal_text.hpp"
 
 namespace tchat {
 

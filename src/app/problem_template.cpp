@@ -10,7 +10,7 @@
 #include "base/user_error.hpp"
 #include "files/auto_format.hpp"
 #include "plugin/compiler.hpp"
-#include "plugin/translation.hpp"
+#include "plugin/cpp_writer.hpp"
 
 namespace tchat {
 

@@ -15,7 +15,7 @@ struct Sweep {
   std::string letter;  ///< before the numbers of its attractors
   AttractorSamples samples;
   std::vector<std::string> monitors;  ///< of branches, which it has columns of in part
-  bool is_cut = false;  ///< by tchat (plugin/sectioned_problem.hpp): its orbits are followed without that section
+  bool is_cut = false;  ///< by tchat (plugin/problem_library.hpp): its orbits are followed without that section
 };
 
 /// Does a branch begin at such an attractor? At periodic ones and those at rest.

@@ -12,7 +12,7 @@
 #include "explore/admissible_points.hpp"
 #include "explore/branch_ends.hpp"
 #include "files/solution_file_reader.hpp"
-#include "plugin/named_parameters.hpp"
+#include "plugin/problem_setup.hpp"
 #include "run/hopf_switch.hpp"
 #include "run/run_remarks.hpp"
 #include "settings/constants_file.hpp"

@@ -29,7 +29,7 @@
 #include "files/dat_file.hpp"
 #include "files/replaced_file.hpp"
 #include "files/solution_file_reader.hpp"
-#include "plugin/named_parameters.hpp"
+#include "plugin/problem_setup.hpp"
 #include "run/run_remarks.hpp"
 #include "settings/constants_file.hpp"
 #include "settings/point_type.hpp"

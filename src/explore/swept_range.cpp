@@ -8,7 +8,7 @@
 #include "base/number.hpp"
 #include "base/user_error.hpp"
 #include "base/words.hpp"
-#include "plugin/named_parameters.hpp"
+#include "plugin/problem_setup.hpp"
 #include "simulate/sweep_grid.hpp"
 
 namespace tchat {

@@ -10,7 +10,7 @@
 #include "base/user_error.hpp"
 #include "base/words.hpp"
 #include "model/parameter_layout.hpp"
-#include "plugin/named_parameters.hpp"
+#include "plugin/problem_setup.hpp"
 #include "settings/constant_value.hpp"
 #include "settings/settings_type.hpp"
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "plugin/file_lock.hpp"
+#include "plugin/build_stamp.hpp"
 
 namespace tchat {
 

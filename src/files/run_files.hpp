@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "files/replaced_file.hpp"
+#include "plugin/build_stamp.hpp"
 #include "plugin/exit_guard.hpp"
-#include "plugin/file_lock.hpp"
 
 namespace tchat {
 

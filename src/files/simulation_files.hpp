@@ -15,7 +15,7 @@
 #include "model/hybrid_system.hpp"
 #include "model/index_vector.hpp"
 #include "motion/hybrid_simulation.hpp"
-#include "plugin/file_lock.hpp"
+#include "plugin/build_stamp.hpp"
 
 namespace tchat {
 

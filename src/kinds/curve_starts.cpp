@@ -13,7 +13,7 @@
 #include "orbit/monitor_gradient.hpp"
 #include "orbit/orbit.hpp"
 #include "orbit/periodic_orbit_system.hpp"
-#include "plugin/named_parameters.hpp"
+#include "plugin/problem_setup.hpp"
 #include "run/orbit_start.hpp"
 #include "run/solver_settings.hpp"
 #include "settings/point_type.hpp"

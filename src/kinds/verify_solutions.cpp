@@ -21,7 +21,6 @@
 #include "orbit/collocation_rule.hpp"
 #include "orbit/torus_system.hpp"
 #include "plugin/exit_guard.hpp"
-#include "plugin/named_parameters.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
 #include "plugin/problem_setup.hpp"

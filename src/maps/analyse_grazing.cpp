@@ -13,7 +13,6 @@
 #include "files/solution_file_reader.hpp"
 #include "maps/grazing_point.hpp"
 #include "model/index_vector.hpp"
-#include "plugin/named_parameters.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
 #include "plugin/problem_setup.hpp"

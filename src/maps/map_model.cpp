@@ -17,7 +17,6 @@
 #include "model/event_at.hpp"
 #include "model/identity_jump.hpp"
 #include "motion/mode_rule.hpp"
-#include "plugin/named_parameters.hpp"
 #include "plugin/problem_setup.hpp"
 #include "resegment/empty_segments.hpp"
 #include "run/torus_start.hpp"

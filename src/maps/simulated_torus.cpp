@@ -17,7 +17,7 @@
 #include "model/identity_jump.hpp"
 #include "motion/segment_flow.hpp"
 #include "orbit/torus_system.hpp"
-#include "plugin/named_parameters.hpp"
+#include "plugin/problem_setup.hpp"
 #include "run/orbit_start.hpp"
 #include "run/run_remarks.hpp"
 #include "settings/constants_writer.hpp"

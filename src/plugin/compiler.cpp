@@ -14,10 +14,8 @@
 
 #include "base/user_error.hpp"
 #include "base/words.hpp"
-#include "plugin/compiler_errors.hpp"
+#include "plugin/build_stamp.hpp"
 #include "plugin/compiler_process.hpp"
-#include "plugin/instruction_set.hpp"
-#include "plugin/precompiled_header.hpp"
 
 namespace tchat {
 

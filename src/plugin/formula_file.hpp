@@ -1,8 +1,10 @@
-/// A file of formulas as it is written: its statements, sorted, with nothing checked between them.
+/// A file of formulas: its statements as they are written, and what each name stands for.
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -11,6 +13,8 @@
 #include "plugin/tokens.hpp"
 
 namespace tchat::formulas {
+
+// A file of formulas as it is written: its statements, sorted, with nothing checked between them.
 
 /// par a = 1, x' = v, v -> -r*v, event wall = 1 - x, aux E = v^2: a name and what it is.
 struct Assignment {
@@ -72,5 +76,38 @@ struct FormulaFile {
 
 /// Reads all statements; mistakes are collected, the statements that have them left out.
 FormulaFile read_formula_file(std::string_view text, FormulaErrors& errors);
+
+struct Symbol {
+  enum class Kind { state, parameter, definition, function };
+  Kind kind = Kind::state;
+  std::size_t index = 0;  ///< among its kind; states in the order of their first equations
+  Position at;
+};
+
+/// "a state", "a parameter", ...
+std::string in_words(Symbol::Kind kind);
+
+/// The names that expressions may use. Fields, events and jumps have names of their own.
+class NameTable {
+ public:
+  /// Names used twice, or those of built-in functions and words, are mistakes.
+  NameTable(const FormulaFile& file, FormulaErrors& errors);
+
+  /// Null when the name stands for nothing.
+  const Symbol* find(std::string_view name) const;
+  const std::vector<std::string>& states() const { return states_; }
+  /// All of them, with built-in functions and pi, for suggestions.
+  std::vector<std::string> all() const;
+
+ private:
+  void add(const Token& name, Symbol::Kind kind, std::size_t index, FormulaErrors& errors);
+  void add_states(const std::vector<Assignment>& equations, FormulaErrors& errors);
+
+  std::map<std::string, Symbol, std::less<>> symbols_;
+  std::vector<std::string> states_;
+};
+
+/// Throws FormulaError for a name that means something in every file: pi, a function, a word of conditions.
+void refuse_reserved(const Token& name);
 
 }  // namespace tchat::formulas

@@ -1,26 +1,43 @@
-/// From what the user names to a shared library that can be loaded: P.so as it is, or P.cpp, P.f, P.tch compiled when
-/// needed.
-///
-/// Searching order for P, which may contain folders (dir/P):
-///   1. P ends in .so: that file as it is.
-///   2. P ends in .cpp, .cc, .cxx, .f90 (Fortran, free form), .f or .for (fixed form): that source; the library is the
-///      same name with .so. P ends in .tch: these formulas, translated to C++; the library is P.tch.so.
-///   3. otherwise P with one of these endings, in this order, then P.so; then the same in the folder P: P/P.cpp, ...
-///
-/// A source is compiled when its library is missing, or when the source, a header that it includes (tchat's interface
-/// among them) or the compiler has changed since; in a copy of a folder the copy's own files count. The library is
-/// compiled to a temporary name under a lock and then renamed, so that several processes may ask for one plugin at the
-/// same time and none ever sees half a file. Where the source's folder cannot be written, the library goes to
-/// $XDG_CACHE_HOME/tchat, else ~/.cache/tchat.
+/// From what the user names to a shared library: P.so as it is, or sources that are compiled.
 #pragma once
 
 #include <optional>
 #include <ostream>
 #include <string>
+#include <vector>
 
 #include "plugin/compiler.hpp"
 
 namespace tchat {
+
+// Which files a Fortran source includes: what its library depends on, and whether its own header NAME.h is missing.
+//
+// gfortran cannot list INCLUDE lines as it can #include (unless it preprocesses the source, which alters old sources),
+// so they are read here.
+
+struct FortranFiles {
+  std::vector<std::string> found;  ///< absolute: the source, then what it includes, directly or not
+  std::string own_header;          ///< "NAME.h" for NAME.f
+  bool lacks_own_header = false;   ///< it is included, but nowhere: TC-HAT's sources include an empty one
+};
+
+/// Follows INCLUDE 'file' lines; a file is looked for in the folder of the file that includes it, then in `folders`.
+FortranFiles fortran_files(const std::string& source, const std::vector<std::string>& folders);
+
+// From what the user names to a shared library that can be loaded: P.so as it is, or P.cpp, P.f, P.tch compiled when
+// needed.
+//
+// Searching order for P, which may contain folders (dir/P):
+//   1. P ends in .so: that file as it is.
+//   2. P ends in .cpp, .cc, .cxx, .f90 (Fortran, free form), .f or .for (fixed form): that source; the library is the
+//      same name with .so. P ends in .tch: these formulas, translated to C++; the library is P.tch.so.
+//   3. otherwise P with one of these endings, in this order, then P.so; then the same in the folder P: P/P.cpp, ...
+//
+// A source is compiled when its library is missing, or when the source, a header that it includes (tchat's interface
+// among them) or the compiler has changed since; in a copy of a folder the copy's own files count. The library is
+// compiled to a temporary name under a lock and then renamed, so that several processes may ask for one plugin at the
+// same time and none ever sees half a file. Where the source's folder cannot be written, the library goes to
+// $XDG_CACHE_HOME/tchat, else ~/.cache/tchat.
 
 /// Path of a shared library that is up to date. Throws UserError: nothing there under that name, no compiler, the
 /// compiler's own message, no folder to write to.

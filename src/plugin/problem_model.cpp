@@ -9,10 +9,8 @@
 
 #include "model/hybrid_system.hpp"
 #include "model/parameter_layout.hpp"
-#include "plugin/dependence.hpp"
-#include "plugin/evaluation_cost.hpp"
-#include "plugin/expression_check.hpp"
-#include "plugin/expression_value.hpp"
+#include "plugin/expression.hpp"
+#include "plugin/formula_check.hpp"
 
 namespace tchat::formulas {
 

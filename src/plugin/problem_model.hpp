@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "plugin/formula_file.hpp"
-#include "plugin/name_table.hpp"
 
 namespace tchat::formulas {
 

@@ -1,23 +1,203 @@
 #include "plugin/problem_setup.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <optional>
 
+#include "base/near_words.hpp"
 #include "base/number.hpp"
+#include "base/text_file.hpp"
 #include "base/user_error.hpp"
 #include "model/identity_jump.hpp"
 #include "model/mode_dimensions.hpp"
 #include "orbit/quantity.hpp"
-#include "plugin/named_parameters.hpp"
+#include "plugin/formula_file.hpp"
+#include "plugin/plugin_build.hpp"
 #include "settings/constants_file.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"
 
 namespace tchat {
+
+namespace {
+
+bool is_known(const HybridSystem& system, int k) {
+  return k == system.layout().rotation() || is_own_parameter(system, k);
+}
+
+bool is_user_function(const HybridSystem& system, const std::string& name) {
+  const std::optional<Quantity> quantity = find_quantity(system, name);
+  return quantity && quantity->kind == Quantity::Kind::user_function;
+}
+
+/// `name` is neither a parameter nor a monitor.
+[[noreturn]] void refuse(const HybridSystem& system, const std::string& name, const std::string& where) {
+  std::vector<std::string> known{"period"};
+  for (int k = 1; k <= system.table().user_values; ++k) known.push_back(user_function_name(system, k));
+  const std::string monitors = fmt::format("{}", fmt::join(known, ", "));
+  for (int k = 1; k <= system.parameters(); ++k) known.push_back(system.parameter_name(k));
+  const std::vector<std::string> near = near_words(name, known);
+  throw UserError(fmt::format("{}: {} is no parameter of problem {} (it has {}) and no monitor ({}, max({}), ...){}",
+                              where, name, system.name(), parameter_list(system), monitors, state_in_monitor(system, 1),
+                              near.empty() ? "" : fmt::format("; did you mean {}?", fmt::join(near, ", "))));
+}
+
+}  // namespace
+
+bool has_further_parameters(const HybridSystem& system) {
+  return system.table().initial_durations != nullptr || system.table().output_parameters != nullptr;
+}
+
+bool is_own_parameter(const HybridSystem& system, int k) {
+  return k >= 1 &&
+         (k <= system.parameters() || k >= system.layout().first_duration() || has_further_parameters(system));
+}
+
+std::string parameter_list(const HybridSystem& system) {
+  constexpr int most = 60, first = 20;  // of more, the first and the last
+  std::string names;
+  for (int i = 1; i <= system.parameters(); ++i)
+    if (system.parameters() <= most || i <= first || i == system.parameters())
+      names += fmt::format("{}{}", i > 1 ? ", " : "", system.parameter_name(i));
+    else if (i == first + 1)
+      names += ", ...";
+  if (names.empty()) return "none";
+  return system.parameters() == 1 ? "PAR(1): " + names
+                                  : fmt::format("PAR(1) to PAR({}): {}", system.parameters(), names);
+}
+
+int parameter_index(const HybridSystem& system, const std::string& name, const std::string& where) {
+  if (const std::optional<int> k = parse_integer(name)) {
+    if (is_known(system, *k)) return *k;
+  } else if (const int named = system.parameter_index(name); named > 0) {
+    return named;
+  }
+  throw UserError(fmt::format("{}: PAR({}) is no parameter of problem {}; it has {}; PAR({}), ... are the durations",
+                              where, name, system.name(), parameter_list(system), system.layout().first_duration()));
+}
+
+std::string parameter_name(const HybridSystem& system, const RunSettings& settings, int k) {
+  if (is_monitor(settings, k)) return settings.monitors[static_cast<std::size_t>(k - first_monitor(settings))];
+  return is_duration(settings, k) ? settings.layout.duration_name(k) : system.parameter_name(k);
+}
+
+std::string held_text(const HybridSystem& system, const RunSettings& settings) {
+  std::string text;
+  for (const HeldValue& held : settings.held)
+    text += (text.empty() ? "" : ", ") + parameter_name(system, settings, held.parameter);
+  return text;
+}
+
+std::vector<MonitorName> monitor_names(const HybridSystem& system, const RunSettings& settings) {
+  std::vector<MonitorName> list;
+  for (const std::string& name : settings.monitors) list.push_back(parse_monitor(system, name, "constants"));
+  return list;
+}
+
+void resolve_names(RunSettings& settings, const HybridSystem& system) {
+  const ParameterLayout layout = system.layout();
+  const auto segments = static_cast<int>(settings.segments.size());
+  resolve_names(settings, layout, [&](const std::string& name, const std::string& where) {
+    const int own = system.parameter_index(name);
+    if (own > 0 && !layout.is_duration(own, segments)) return own;
+    if (const std::optional<int> k = layout.duration_of_name(name)) return *k;
+    const bool is_monitor = name.find('(') != std::string::npos || name == "period" || is_user_function(system, name);
+    if (!is_monitor && !parse_integer(name)) refuse(system, name, where);
+    if (!is_monitor) return parameter_index(system, name, where);
+    parse_monitor(system, name, where);
+    return names_a_monitor;
+  });
+}
+
+namespace {
+
+constexpr std::size_t longest_source = 1 << 20;  // bytes; a key has been pressed, and somebody waits
+
+bool is_word(char c) { return c == '_' || std::isalnum(static_cast<unsigned char>(c)) != 0; }
+
+/// The text with blanks in the place of comments.
+std::string without_comments(std::string_view text) {
+  std::string plain(text);
+  char quote = '\0';
+  for (std::size_t k = 0; k < plain.size(); ++k) {
+    const char c = plain[k];
+    if (quote != '\0') {
+      if (c == '\\') ++k;
+      if (c == quote || c == '\n') quote = '\0';
+      continue;
+    }
+    if (c == '"' || c == '\'') quote = c;
+    if (c != '/' || k + 1 == plain.size()) continue;
+    const bool is_line = plain[k + 1] == '/';
+    if (!is_line && plain[k + 1] != '*') continue;
+    const std::size_t found = is_line ? plain.find('\n', k) : plain.find("*/", k + 2);
+    const std::size_t end = found == std::string::npos ? plain.size() : found + (is_line ? 0 : 2);
+    std::fill(plain.begin() + static_cast<std::ptrdiff_t>(k), plain.begin() + static_cast<std::ptrdiff_t>(end), ' ');
+    k = end - 1;
+  }
+  return plain;
+}
+
+/// Behind the identifier `word`; npos when the text does not have it.
+std::size_t find_behind(const std::string& text, std::string_view word) {
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+    const std::size_t end = at + word.size();
+    if ((at == 0 || !is_word(text[at - 1])) && (end == text.size() || !is_word(text[end]))) return end;
+  }
+  return std::string::npos;
+}
+
+/// A name that can be typed: no blanks, quotes, backslashes or control characters.
+bool is_plain(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+    return std::isgraph(static_cast<unsigned char>(c)) != 0 && c != '"' && c != '\'' && c != '\\';
+  });
+}
+
+std::vector<std::string> parameter_names_in_formulas(std::string_view text) {
+  formulas::FormulaErrors mistakes;
+  std::vector<std::string> names;
+  for (const formulas::Assignment& parameter : formulas::read_formula_file(text, mistakes).parameters)
+    names.push_back(parameter.name.text);
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::string> parameter_names_in_cpp(std::string_view text) {
+  const std::string plain = without_comments(text);
+  std::size_t at = find_behind(plain, "parameter_names");
+  if (at == std::string::npos) return {};
+  at = plain.find_first_not_of("[]0123456789 \t\r\n=", at);
+  std::vector<std::string> names;
+  while (at != std::string::npos && plain[at] != '}') {
+    if (plain[at] == '"') {
+      const std::size_t end = plain.find('"', at + 1);
+      if (end == std::string::npos) return {};
+      names.push_back(plain.substr(at + 1, end - at - 1));
+      if (!is_plain(names.back())) return {};
+      at = end;
+    } else if (plain[at] != '{' && plain[at] != ',') {
+      return {};
+    }
+    at = plain.find_first_not_of(" \t\r\n", at + 1);
+  }
+  return names;
+}
+
+std::vector<std::string> parameter_names_in_source(const std::string& name_or_path) {
+  const std::string source = source_of(name_or_path);
+  if (source.empty()) return {};
+  const std::string text = read_text_if_there(source, "source of the plugin", longest_source).value_or("");
+  return formulas_of(source) ? parameter_names_in_formulas(text) : parameter_names_in_cpp(text);
+}
 
 namespace {
 

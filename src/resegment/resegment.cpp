@@ -13,7 +13,6 @@
 #include "files/run_files.hpp"
 #include "files/solution_file.hpp"
 #include "files/solution_file_reader.hpp"
-#include "plugin/named_parameters.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
 #include "plugin/problem_setup.hpp"

@@ -13,7 +13,6 @@
 #include "files/simulation_files.hpp"
 #include "files/solution_file.hpp"
 #include "model/parameter_vector.hpp"
-#include "plugin/named_parameters.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
 #include "plugin/problem_setup.hpp"

@@ -17,7 +17,7 @@
 #include "orbit/defining_system.hpp"
 #include "orbit/mesh_adaptation.hpp"
 #include "orbit/ring_system.hpp"
-#include "plugin/named_parameters.hpp"
+#include "plugin/problem_setup.hpp"
 #include "run/solver_settings.hpp"
 #include "settings/point_type.hpp"
 #include "settings/problem_type.hpp"

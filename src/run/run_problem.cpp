@@ -13,7 +13,6 @@
 #include "base/warnings.hpp"
 #include "continuation/continuation_run.hpp"
 #include "files/solution_file.hpp"
-#include "plugin/named_parameters.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
 #include "plugin/problem_setup.hpp"

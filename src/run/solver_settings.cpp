@@ -10,7 +10,7 @@
 
 #include "base/user_error.hpp"
 #include "model/identity_jump.hpp"
-#include "plugin/named_parameters.hpp"
+#include "plugin/problem_setup.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"
 #include "stability/bifurcation_tests.hpp"

@@ -11,7 +11,7 @@
 #include "linear/dense_matrix.hpp"
 #include "model/event_at.hpp"
 #include "orbit/torus_system.hpp"
-#include "plugin/named_parameters.hpp"
+#include "plugin/problem_setup.hpp"
 #include "run/solver_settings.hpp"
 #include "settings/point_type.hpp"
 #include "settings/settings_type.hpp"

@@ -1,7 +1,7 @@
 #include "simulate/loaded_problem.hpp"
 
-#include "plugin/named_parameters.hpp"
 #include "plugin/plugin_build.hpp"
+#include "plugin/problem_setup.hpp"
 
 namespace tchat {
 

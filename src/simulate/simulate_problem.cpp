@@ -14,7 +14,7 @@
 #include "motion/attractor_search.hpp"
 #include "motion/equilibrium_approach.hpp"
 #include "motion/found_orbit.hpp"
-#include "plugin/named_parameters.hpp"
+#include "plugin/problem_setup.hpp"
 #include "settings/constants_writer.hpp"
 #include "settings/run_settings.hpp"
 #include "simulate/exponent_measurement.hpp"

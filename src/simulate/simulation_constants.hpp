@@ -4,7 +4,7 @@
 #include <string>
 
 #include "model/hybrid_system.hpp"
-#include "plugin/problem_sizes.hpp"
+#include "plugin/fortran_problem.hpp"
 #include "settings/run_settings.hpp"
 #include "settings/settings_draft.hpp"
 #include "simulate/simulation_request.hpp"

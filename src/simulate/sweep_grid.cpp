@@ -6,7 +6,7 @@
 
 #include "base/number.hpp"
 #include "base/user_error.hpp"
-#include "plugin/named_parameters.hpp"
+#include "plugin/problem_setup.hpp"
 #include "simulate/simulation_start.hpp"
 
 namespace tchat {

@@ -3,7 +3,6 @@
 
 #include "base/user_error.hpp"
 #include "files/dat_file.hpp"
-#include "plugin/named_parameters.hpp"
 #include "plugin/problem_setup.hpp"
 #include "run/solver_settings.hpp"
 #include "support/test_system.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "fuzz_target.hpp"
-#include "plugin/translation.hpp"
+#include "plugin/cpp_writer.hpp"
 
 using namespace tchat;
 

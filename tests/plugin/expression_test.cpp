@@ -2,8 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "plugin/expression_parser.hpp"
-#include "plugin/expression_value.hpp"
+#include "plugin/expression.hpp"
 
 using namespace tchat::formulas;
 

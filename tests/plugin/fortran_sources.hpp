@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "plugin/problem_sizes.hpp"
+#include "plugin/fortran_problem.hpp"
 
 /// Two states, PAR(1..3) = a, b, r:
 ///     f_1 = (x2, -a sin(x1) - b x2^2),  h_1 = x1 - a,  h_2 = x1 x2,  g_1 = (x1, -r x2)

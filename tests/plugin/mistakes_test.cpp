@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "base/user_error.hpp"
-#include "plugin/translation.hpp"
+#include "plugin/cpp_writer.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

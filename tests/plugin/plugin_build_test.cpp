@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/user_error.hpp"
-#include "plugin/precompiled_header.hpp"
+#include "plugin/build_stamp.hpp"
 #include "plugin/problem_library.hpp"
 #include "plugin_folder.hpp"
 

@@ -10,7 +10,6 @@
 
 #include "fortran_sources.hpp"
 #include "plugin/exit_guard.hpp"
-#include "plugin/plugin_call.hpp"
 #include "plugin/problem_library.hpp"
 #include "plugin_folder.hpp"
 

@@ -1,4 +1,4 @@
-#include "plugin/source_names.hpp"
+#include "plugin/problem_setup.hpp"
 
 #include <catch2/catch.hpp>
 #include <string>

@@ -1,7 +1,7 @@
 // The language's statements, by the C++ that they become; the C++ itself is compiled in compiled_formulas_test.cpp.
 #include <catch2/catch.hpp>
 
-#include "plugin/translation.hpp"
+#include "plugin/cpp_writer.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;
