@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "simulate/simulation_request.hpp"
+#include "simulate/simulation_start.hpp"
 
 namespace tchat {
 

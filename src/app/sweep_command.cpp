@@ -15,7 +15,7 @@
 #include "app/simulation_options.hpp"
 #include "base/words.hpp"
 #include "maps/map_sweep_problem.hpp"
-#include "simulate/sweep_problem.hpp"
+#include "simulate/sweep_setup.hpp"
 
 namespace tchat {
 

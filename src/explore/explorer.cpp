@@ -34,7 +34,7 @@
 #include "settings/constants_file.hpp"
 #include "settings/point_type.hpp"
 #include "settings/settings_type.hpp"
-#include "simulate/loaded_problem.hpp"
+#include "simulate/simulation_start.hpp"
 
 namespace tchat {
 

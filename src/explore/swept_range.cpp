@@ -9,7 +9,7 @@
 #include "base/user_error.hpp"
 #include "base/words.hpp"
 #include "plugin/problem_setup.hpp"
-#include "simulate/sweep_grid.hpp"
+#include "simulate/sweep_file.hpp"
 
 namespace tchat {
 

@@ -23,7 +23,6 @@
 #include "settings/problem_type.hpp"
 #include "settings/run_settings.hpp"
 #include "settings/settings_type.hpp"
-#include "simulate/simulation_constants.hpp"
 #include "simulate/simulation_start.hpp"
 
 namespace tchat {

@@ -8,7 +8,6 @@
 #include "base/user_error.hpp"
 #include "files/dat_file.hpp"
 #include "files/point_file.hpp"
-#include "simulate/loaded_problem.hpp"
 #include "simulate/simulation_start.hpp"
 #include "simulate/sweep_job.hpp"
 

@@ -8,9 +8,8 @@
 
 #include "maps/composite_map.hpp"
 #include "maps/map_model.hpp"
-#include "simulate/sweep_grid.hpp"
-#include "simulate/sweep_point.hpp"
-#include "simulate/sweep_request.hpp"
+#include "simulate/sample_record.hpp"
+#include "simulate/sweep_file.hpp"
 #include "simulate/sweep_setup.hpp"
 
 namespace tchat {

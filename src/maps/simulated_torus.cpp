@@ -23,11 +23,9 @@
 #include "settings/constants_writer.hpp"
 #include "settings/run_settings.hpp"
 #include "settings/settings_type.hpp"
-#include "simulate/loaded_problem.hpp"
 #include "simulate/orbit_hand_over.hpp"
 #include "simulate/simulation_start.hpp"
 #include "simulate/simulation_summary.hpp"
-#include "simulate/start_notice.hpp"
 
 namespace tchat {
 

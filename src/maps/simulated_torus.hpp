@@ -9,7 +9,7 @@
 #include "model/hybrid_system.hpp"
 #include "model/index_vector.hpp"
 #include "orbit/orbit.hpp"
-#include "simulate/simulation_request.hpp"
+#include "simulate/simulation_start.hpp"
 
 namespace tchat {
 

@@ -12,7 +12,6 @@
 
 #include "simulate/sample_record.hpp"
 #include "simulate/sweep_file.hpp"
-#include "simulate/sweep_grid.hpp"
 
 namespace tchat {
 

@@ -12,7 +12,7 @@
 #include <optional>
 
 #include "model/hybrid_system.hpp"
-#include "simulate/sweep_point.hpp"
+#include "simulate/sample_record.hpp"
 
 namespace tchat {
 

@@ -1,16 +1,36 @@
-/// A periodic orbit or an equilibrium found by simulation as the start of a continuation: NAME2.dat and the constants
-/// file gc.NAME2.
+/// A periodic orbit or equilibrium found by simulation as the start of a continuation.
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "model/hybrid_system.hpp"
 #include "motion/found_orbit.hpp"
+#include "motion/hybrid_simulation.hpp"
 #include "motion/orbit_samples.hpp"
 #include "settings/run_settings.hpp"
 
 namespace tchat {
+
+// The part of a motion from which a periodic orbit near it is looked for, whatever becomes of the motion later: an
+// unstable orbit is left, but one period of a motion that begins near it stays near.
+
+struct RecordedPeriod {
+  std::vector<SimulatedSegment> segments;  ///< empty: none
+  Eigen::VectorXd size;                    ///< largest |x_i| up to its end, n; infinite for those in `ignorable`
+};
+
+/// The segments between two equal events, the first one that is met and the one after which the state is nearest to
+/// that behind the first, as a share of the motion's range; a shorter part that is half as near goes before. With
+/// `events` the segments between the first event and so many later. States in `ignorable`, from 0, are not compared.
+/// None when no event comes again, or that many later is not the same.
+RecordedPeriod recorded_period(const std::vector<SimulatedSegment>& segments, std::optional<long> events,
+                               const std::vector<Eigen::Index>& ignorable);
+
+// A periodic orbit or an equilibrium found by simulation as the start of a continuation: NAME2.dat and the constants
+// file gc.NAME2.
 
 /// The .dat file: `# PAR(k) = v` for all parameters and durations, then the rows.
 std::string orbit_data_text(const HybridSystem& system, const FoundOrbit& orbit, const OrbitSamples& samples,

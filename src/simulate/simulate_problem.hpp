@@ -1,12 +1,38 @@
-/// `tchat simulate` without the command line: constants -> plugin -> start -> simulation -> orbit -> files.
+/// The command `tchat simulate` without its command line, and its measurement of Lyapunov exponents.
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <ostream>
+#include <string>
 
-#include "simulate/simulation_request.hpp"
+#include "motion/lyapunov_exponents.hpp"
+#include "simulate/simulation_start.hpp"
 
 namespace tchat {
+
+// Lyapunov exponents of a `tchat simulate`: how long they are averaged, and how they are told.
+
+/// Is a length given after the transient? Then exponents are those of that part of the motion.
+bool has_wanted_length(const SimulationPlan& plan);
+
+/// Null when none are wanted. Throws UserError when there are not so many, or the section does not exist.
+std::unique_ptr<LyapunovAccumulator> exponents_to_measure(const SimulationRequest& request, const HybridSystem& system,
+                                                          const Eigen::VectorXd& par);
+
+/// Without a wanted length the simulation goes on from where `result` left it, until the bars are small enough, at most
+/// 100000 events. The exponents for people, with a line that says what they mean; `orbit_attracts` when the motion has
+/// settled on a stable periodic orbit. `settings` are those of the simulation. `progress` may be null.
+std::string exponents_of(const SimulationRequest& request, const SimulationResult& result, HybridSimulation& simulation,
+                         LyapunovAccumulator& exponents, bool orbit_attracts, const SimulationSettings& settings,
+                         std::ostream* progress);
+
+/// The table of them and what they mean; `orbit_attracts` when the motion has settled on a stable periodic orbit,
+/// `doubt` where a positive exponent may be no chaos.
+std::string spectrum_text(const HybridSystem& system, const LyapunovSpectrum& spectrum, int section,
+                          bool orbit_attracts, const std::string& doubt = "");
+
+// `tchat simulate` without the command line: constants -> plugin -> start -> simulation -> orbit -> files.
 
 /// Simulates, writes O.trajectory and O.events, with hand_over also NAME2.dat and gc.NAME2; prints a summary to
 /// `screen` (nothing when quiet). `progress`, if given, is told about long work. Returns 0; 1 when hand_over was asked

@@ -21,10 +21,8 @@
 #include "motion/lyapunov_exponents.hpp"
 #include "motion/watched_flow.hpp"
 #include "simulate/attractor_numbering.hpp"
-#include "simulate/incoming_states.hpp"
-#include "simulate/largest_values.hpp"
-#include "simulate/loaded_problem.hpp"
-#include "simulate/simulation_rule.hpp"
+#include "simulate/recorded_states.hpp"
+#include "simulate/simulation_start.hpp"
 
 namespace tchat {
 

@@ -7,10 +7,9 @@
 
 #include "plugin/problem_library.hpp"
 #include "simulate/capture.hpp"
-#include "simulate/simulation_constants.hpp"
-#include "simulate/simulation_request.hpp"
-#include "simulate/sweep_grid.hpp"
-#include "simulate/sweep_point.hpp"
+#include "simulate/sample_record.hpp"
+#include "simulate/simulation_start.hpp"
+#include "simulate/sweep_file.hpp"
 
 namespace tchat {
 
@@ -20,7 +19,7 @@ struct Recording {
     none,
     all_events,  ///< where events end segments, before their jumps
     /// Where the event function `section` falls through zero, before the jump if it ends the segment; with
-    /// `penetration`, of the flow that comes in (simulate/incoming_states.hpp)
+    /// `penetration`, of the flow that comes in (simulate/recorded_states.hpp)
     section,
     /// On P, where `penetration` is least along the smooth flow that comes in (h_x f = 0): an impact there is taken
     /// account of only afterwards (2.64)

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <optional>
 #include <set>
 
 #include "base/number.hpp"
@@ -15,14 +14,212 @@
 #include "files/run_files.hpp"
 #include "files/solution_file_reader.hpp"
 #include "model/event_at.hpp"
+#include "model/index_vector.hpp"
 #include "model/mode_dimensions.hpp"
-#include "simulate/simulation_rule.hpp"
+#include "plugin/plugin_build.hpp"
+#include "plugin/problem_setup.hpp"
+#include "settings/constants_file.hpp"
 
 namespace tchat {
 
 namespace {
 
+/// The segments of --signature; those that the file has keep its monitored event functions.
+std::vector<SegmentSettings> segments_of_signature(const std::string& text, const std::vector<SegmentSettings>& known) {
+  std::vector<SegmentSettings> segments;
+  for (const IndexVector& index : parse_signature(text)) {
+    const auto same = std::find_if(known.begin(), known.end(), [&](const auto& s) { return s.index == index; });
+    SegmentSettings segment;
+    if (same != known.end()) segment = *same;
+    segment.index = index;
+    segments.push_back(std::move(segment));
+  }
+  return segments;
+}
+
+void require_events(const HybridSystem& system) {
+  if (system.count(FunctionKind::event) > 0 && system.count(FunctionKind::jump) > 0) return;
+  throw UserError(fmt::format(
+      "problem {} has no event functions or no jumps, so no segment of a simulation could end; write one, a "
+      "section of the orbit, or use `tchat run`: IPS = 4, or event function 0 for smooth orbits",
+      system.name()));
+}
+
+}  // namespace
+
+SimulationConstants read_simulation_constants(const SimulationRequest& request) {
+  SimulationConstants constants;
+  if (request.constants)
+    constants.path = constants_path(*request.constants);
+  else
+    constants.path = own_constants_path(request.name);
+  RunSettings& settings = constants.settings;
+  if (constants.is_given()) {
+    settings = read_constants_file(constants.path);
+  } else {
+    settings.free_parameters = {1};
+    settings.segments.resize(1);
+  }
+  apply_overrides(settings, request.overrides);
+  constants.file_segments = static_cast<int>(settings.segments.size());
+  constants.has_signature = constants.is_given();
+  return constants;
+}
+
+SimulationConstants with_signature(const SimulationRequest& request, SimulationConstants constants) {
+  if (!request.signature) return constants;
+  std::vector<SegmentSettings>& segments = constants.settings.segments;
+  segments =
+      segments_of_signature(*request.signature, constants.is_given() ? segments : std::vector<SegmentSettings>{});
+  constants.has_signature = true;
+  return constants;
+}
+
+ProblemSizes sizes_of(const SimulationRequest& request, const SimulationConstants& constants) {
+  if (!constants.is_given())
+    throw UserError(
+        fmt::format("{} is a Fortran plugin, which does not say how many states and functions it has; give a constants "
+                    "file with -c C (or name one gc.{}), whose NDIM and signature say it",
+                    request.name, request.name));
+  ProblemSizes sizes = problem_sizes(constants.settings);
+  if (request.modes)
+    for (const IndexVector& index : parse_modes(*request.modes)) sizes.add(index);
+  return sizes;
+}
+
+void fit_to_problem(SimulationConstants& constants, const HybridSystem& system,
+                    const std::vector<std::string>& overrides) {
+  require_events(system);
+  if (!constants.is_given()) constants.settings.dimension = system.dimension();
+  for (const SegmentSettings& segment : constants.settings.segments)
+    if (const std::string fault = fault_of(system, {segment.index}); constants.has_signature && !fault.empty())
+      throw UserError(fmt::format(
+          "{}: {}", constants.is_given() ? SettingsSource{constants.path, overrides}.of("GCFIND") : "--signature",
+          fault));
+  if (constants.is_given()) check_settings_against(system, constants.settings, {constants.path, overrides});
+}
+
+namespace {
+
 using Eigen::VectorXd;
+
+/// Those of --mode, which the problem must have.
+std::vector<IndexVector> existing_modes(const HybridSystem& system, const std::string& text) {
+  std::vector<IndexVector> index_vectors = parse_modes(text);
+  if (const std::string fault = fault_of(system, index_vectors); !fault.empty())
+    throw UserError(fmt::format("--mode {}: {}", text, fault));
+  return index_vectors;
+}
+
+std::vector<Mode> modes_of_signature(const RunSettings& settings) {
+  std::vector<Mode> modes;
+  for (const SegmentSettings& segment : settings.segments) {
+    Mode mode{{segment.index}, segment.monitor};
+    std::erase(mode.monitored, segment.index.event);
+    modes.push_back(std::move(mode));
+  }
+  return modes;
+}
+
+bool has_one_of_each(const HybridSystem& system) {
+  return system.count(FunctionKind::field) == 1 && system.count(FunctionKind::event) == 1 &&
+         system.count(FunctionKind::jump) == 1;
+}
+
+[[noreturn]] void refuse_without_signature(const SimulationRequest& request, const HybridSystem& system) {
+  if (system.has_successors())
+    throw UserError(
+        fmt::format("--follow-signature: there is no signature to follow; give it with --signature '1,2,2;...' or a "
+                    "constants file with -c C (there is no gc.{})",
+                    request.name));
+  throw UserError(
+      fmt::format("{} has no index jump function (successors), so a simulation follows a signature; give it with "
+                  "--signature '1,2,2;...' or a constants file with -c C (there is no gc.{}), or give the problem a "
+                  "member `successors` (in a file of formulas: lines `after EVENT: FIELD until EVENT -> JUMP`; page "
+                  "simulation.md)",
+                  system.name(), request.name));
+}
+
+/// The signature, beginning at --mode.
+ModeRule cyclic_rule(const SimulationRequest& request, const SimulationConstants& constants,
+                     const HybridSystem& system) {
+  if (!constants.has_signature && !has_one_of_each(system)) refuse_without_signature(request, system);
+  std::vector<Mode> modes = constants.has_signature ? modes_of_signature(constants.settings)
+                                                    : std::vector<Mode>{Mode{{IndexVector{1, 1, 1}}, {}}};
+  // --signature alone says nothing of what else matters.
+  const bool says_nothing = request.signature && std::all_of(modes.begin(), modes.end(),
+                                                             [](const Mode& mode) { return mode.monitored.empty(); });
+  const auto monitor = says_nothing ? ModeRule::Monitor::what_follows : ModeRule::Monitor::as_given;
+  if (!request.modes) return ModeRule(system, std::move(modes), monitor);
+  const std::vector<IndexVector> wanted = existing_modes(system, *request.modes);
+  const auto at = std::find_if(modes.begin(), modes.end(), [&](const Mode& m) { return m.index_vectors == wanted; });
+  if (at == modes.end())
+    throw UserError(
+        fmt::format("--mode {}: the signature, which the simulation follows, is {}; give one of its index "
+                    "vectors",
+                    *request.modes, to_string(constants.settings.signature())));
+  std::rotate(modes.begin(), at, modes.end());
+  return ModeRule(system, std::move(modes), monitor);
+}
+
+}  // namespace
+
+std::vector<IndexVector> parse_modes(const std::string& text) {
+  std::vector<IndexVector> different;
+  for (const IndexVector& index : parse_index_vectors(text, "--mode"))
+    if (std::find(different.begin(), different.end(), index) == different.end()) different.push_back(index);
+  return different;
+}
+
+std::string modes_text(const std::vector<IndexVector>& modes) {
+  std::string text;
+  for (const IndexVector& v : modes)
+    text += fmt::format("{}{},{},{}", text.empty() ? "" : ";", v.field, v.event, v.jump);
+  return text;
+}
+
+ModeRule simulation_rule(const SimulationRequest& request, const SimulationConstants& constants,
+                         const HybridSystem& system, const VectorXd& x, const VectorXd& par) {
+  if (!system.has_successors() || request.follow_signature || request.signature)
+    return cyclic_rule(request, constants, system);
+  if (request.modes) return ModeRule(system, Mode{existing_modes(system, *request.modes), {}});
+  const auto start = system.successors({0, 0, 0}, x.data(), par.data());
+  const bool is_silent = !start || start->empty();
+  if (is_silent && constants.has_signature)
+    return ModeRule(system, Mode{{constants.settings.segments.front().index}, {}});
+  return ModeRule(system);
+}
+
+LoadedProblem load_for_simulation(const SimulationRequest& request, std::ostream* progress) {
+  LoadedProblem loaded;
+  loaded.plugin = resolve_plugin(request.problem.value_or(request.name), {.progress = progress});
+  SimulationConstants constants = read_simulation_constants(request);
+  loaded.library = std::make_unique<ProblemLibrary>(
+      loaded.plugin, [&] { return sizes_of(request, with_signature(request, constants)); });
+  loaded.library->add_section();
+  const HybridSystem& system = loaded.library->system();
+  resolve_names(constants.settings, system);
+  loaded.constants = with_signature(request, constants);
+  // A signature of constants has no section that a simulation could end at.
+  if (loaded.library->has_added_section() && !request.signature) loaded.constants.has_signature = false;
+  fit_to_problem(loaded.constants, system, request.overrides);
+  return loaded;
+}
+
+SimulationSettings simulation_settings(const SimulationRequest& request, const std::function<bool()>& interrupted) {
+  SimulationSettings settings;
+  settings.flow.method = request.stiff ? IntegrationMethod::bdf : IntegrationMethod::adams;
+  settings.flow.relative_tolerance = request.tolerance;
+  settings.flow.absolute_tolerance = 0.01 * request.tolerance;
+  settings.flow.max_duration = request.wait;
+  settings.flow.max_steps = 10000000;
+  settings.contact = request.contact;
+  settings.samples = static_cast<std::size_t>(request.rows);
+  settings.interrupted = interrupted;
+  return settings;
+}
+
+namespace {
 
 constexpr double orbit_tolerance = 1e-4;  // of a label or a .dat, relative
 

@@ -11,10 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "simulate/sample_record.hpp"
 #include "simulate/sweep_file.hpp"
-#include "simulate/sweep_grid.hpp"
 #include "simulate/sweep_journal.hpp"
-#include "simulate/sweep_point.hpp"
 
 namespace tchat {
 

@@ -1,10 +1,4 @@
-/// What a sweep has computed so far, a line for each value as soon as it is there. Whatever ends the process, the next
-/// one of the same command goes on behind the last whole line.
-///
-///     # tchat sweep journal 1
-///     # KEY VALUE            what the results depend on: problem, plugin, swept quantities, starts, options
-///     # end of heading
-///     0 1 ...                sample_record.hpp
+/// The journal of a sweep, and the ranges of the numbers in it.
 #pragma once
 
 #include <optional>
@@ -12,10 +6,38 @@
 #include <utility>
 #include <vector>
 
-#include "simulate/record_limits.hpp"
+#include "model/hybrid_system.hpp"
 #include "simulate/sample_record.hpp"
 
 namespace tchat {
+
+// Ranges of the numbers in a journal or part of a sweep. Its lines index into arrays and name functions of the
+// problem, and a file may have been edited: nothing of a line is used before it has been checked.
+
+/// `start` of a record that holds a known attractor, whose number, from 1, is its index. An empty record ends them.
+inline constexpr int start_of_known = 0;
+
+struct RecordLimits {
+  std::size_t values = 0;                 ///< index of a value: 0 to values - 1
+  int starts = 0;                         ///< start: 1 to starts
+  int known = 0;                          ///< number of a known attractor: 1 to known, 0 for none
+  int dimension = 0;                      ///< of states
+  int fields = 0, events = 0, jumps = 0;  ///< numbers in index vectors: from 1, in signatures also no_function
+
+  /// Dimension and functions; the other limits are those of a sweep.
+  static RecordLimits of(const HybridSystem& system);
+};
+
+/// "" or what is out of range: "known is 999; allowed are 0 to 3".
+std::string fault_of(const SampleRecord& record, const RecordLimits& limits);
+
+// What a sweep has computed so far, a line for each value as soon as it is there. Whatever ends the process, the next
+// one of the same command goes on behind the last whole line.
+//
+//     # tchat sweep journal 1
+//     # KEY VALUE            what the results depend on: problem, plugin, swept quantities, starts, options
+//     # end of heading
+//     0 1 ...                sample_record.hpp
 
 /// What the results of a sweep depend on, in words, in order.
 using SweepIdentity = std::vector<std::pair<std::string, std::string>>;
@@ -32,7 +54,7 @@ struct JournalContents {
 };
 
 /// A journal or a part from its text. Lines behind a damaged one do not count. The numbers in records have not been
-/// compared with any sweep (record_limits.hpp). Throws UserError for a text that is no journal; `path` is its name.
+/// compared with any sweep (RecordLimits). Throws UserError for a text that is no journal; `path` is its name.
 JournalContents parse_journal(const std::string& text, const std::string& path);
 
 /// The same of a file; nothing is there when the file is missing. Throws ComputationError when the device fails, and

@@ -1,5 +1,5 @@
 // Which states on a section give way to those of the flow that comes in: a section passed every 3 of time.
-#include "simulate/incoming_states.hpp"
+#include "simulate/recorded_states.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -2,8 +2,6 @@
 #include <catch2/catch.hpp>
 
 #include "base/user_error.hpp"
-#include "simulate/simulation_constants.hpp"
-#include "simulate/simulation_rule.hpp"
 #include "simulate/simulation_start.hpp"
 #include "support/test_system.hpp"
 
