@@ -7,7 +7,7 @@
 #include "files/dat_file.hpp"
 #include "files/solution_file_reader.hpp"
 #include "model/parameter_vector.hpp"
-#include "motion/recurrence.hpp"
+#include "motion/simulation_run.hpp"
 
 namespace tchat {
 

@@ -9,10 +9,9 @@
 #include "base/user_error.hpp"
 #include "linear/dense_matrix.hpp"
 #include "maps/invariant_curve.hpp"
-#include "motion/chaos_evidence.hpp"
-#include "motion/exponent_signs.hpp"
-#include "motion/mode_rule.hpp"
-#include "motion/qr_accumulator.hpp"
+#include "motion/attractor_search.hpp"
+#include "motion/growth_series.hpp"
+#include "motion/hybrid_simulation.hpp"
 
 namespace tchat {
 

@@ -12,7 +12,6 @@
 #include "maps/discontinuity_map.hpp"
 #include "maps/smooth_return.hpp"
 #include "maps/torus_return.hpp"
-#include "motion/attractor_kind.hpp"
 #include "motion/growth_series.hpp"
 
 namespace tchat {

@@ -16,7 +16,7 @@
 #include "maps/smooth_return.hpp"
 #include "model/event_at.hpp"
 #include "model/identity_jump.hpp"
-#include "motion/mode_rule.hpp"
+#include "motion/hybrid_simulation.hpp"
 #include "plugin/problem_setup.hpp"
 #include "resegment/empty_segments.hpp"
 #include "run/torus_start.hpp"

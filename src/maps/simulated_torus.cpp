@@ -15,7 +15,7 @@
 #include "files/run_files.hpp"
 #include "files/solution_file.hpp"
 #include "model/identity_jump.hpp"
-#include "motion/segment_flow.hpp"
+#include "motion/orbit_flow.hpp"
 #include "orbit/torus_system.hpp"
 #include "plugin/problem_setup.hpp"
 #include "run/orbit_start.hpp"

@@ -9,7 +9,7 @@
 #include "model/hybrid_system.hpp"
 #include "model/index_vector.hpp"
 #include "model/parameter_vector.hpp"
-#include "motion/flow_options.hpp"
+#include "motion/watched_flow.hpp"
 
 namespace tchat {
 

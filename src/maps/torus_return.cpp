@@ -10,8 +10,8 @@
 
 #include "base/user_error.hpp"
 #include "model/event_at.hpp"
-#include "motion/mode_rule.hpp"
-#include "motion/segment_flow.hpp"
+#include "motion/hybrid_simulation.hpp"
+#include "motion/orbit_flow.hpp"
 #include "run/orbit_start.hpp"
 #include "settings/settings_type.hpp"
 

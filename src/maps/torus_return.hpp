@@ -13,7 +13,7 @@
 #include "maps/suspended_system.hpp"
 #include "model/hybrid_system.hpp"
 #include "model/parameter_vector.hpp"
-#include "motion/flow_options.hpp"
+#include "motion/watched_flow.hpp"
 #include "orbit/orbit.hpp"
 #include "orbit/torus_system.hpp"
 #include "settings/run_settings.hpp"

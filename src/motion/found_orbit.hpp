@@ -1,6 +1,7 @@
-/// The periodic orbit that a simulation has settled on, refined by shooting.
+/// The periodic orbit that a simulation has settled on, refined by shooting, and its samples for a .dat file.
 #pragma once
 
+#include <Eigen/Core>
 #include <complex>
 #include <string>
 #include <vector>
@@ -59,5 +60,20 @@ std::vector<SimulatedSegment> in_standard_order(std::vector<SimulatedSegment> tu
 /// simulated, unless that was a guess.
 FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, const Eigen::VectorXd& par,
                   const IndexVector& first, bool is_guess = false);
+
+// A refined periodic orbit as rows of a .dat file: all segments at common times tau of [0, 1], on the mesh that a
+// continuation is to begin with.
+
+struct OrbitSamples {
+  std::vector<double> tau;  ///< rising, from 0 to 1: every mesh interval in 2 c equal parts
+  Eigen::MatrixXd states;   ///< (n m) x tau.size(), segment 1's states first
+  int intervals = 0;        ///< of the mesh
+  double error = 0.0;       ///< of polynomials of degree c on it, estimated_interpolation_error()
+};
+
+/// The mesh equidistributes the error that polynomials of degree `collocation` would make. It has `intervals`
+/// intervals, and more where the orbit is so sharp that the error would be larger than 1e-7.
+OrbitSamples sample_orbit(const HybridSystem& system, const FoundOrbit& orbit, const Eigen::VectorXd& par,
+                          int intervals, int collocation);
 
 }  // namespace tchat

@@ -1,9 +1,11 @@
 #include "motion/growth_series.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
+
+#include <array>
 #include <cmath>
 #include <limits>
-#include <vector>
+#include <utility>
 
 namespace tchat {
 
@@ -170,6 +172,139 @@ LyapunovSpectrum GrowthSeries::spectrum(Index structural) const {
     spectrum.errors(j) = mean.error;
     if (mean.direction < structural) spectrum.structural.push_back(j);
   }
+  return spectrum;
+}
+
+namespace {
+
+constexpr std::array<std::pair<AttractorKind, const char*>, 7> kind_words = {{
+    {AttractorKind::none, "none"},
+    {AttractorKind::periodic, "periodic"},
+    {AttractorKind::quasi_periodic, "quasi-periodic"},
+    {AttractorKind::chaotic, "chaotic"},
+    {AttractorKind::rest, "rest"},
+    {AttractorKind::chattering, "chattering"},
+    {AttractorKind::escape, "escape"},
+}};
+
+}  // namespace
+
+std::string to_string(AttractorKind kind) {
+  for (const auto& [other, word] : kind_words)
+    if (other == kind) return word;
+  return "none";
+}
+
+std::optional<AttractorKind> attractor_kind(const std::string& word) {
+  for (const auto& [kind, other] : kind_words)
+    if (other == word) return kind;
+  return std::nullopt;
+}
+
+namespace {
+
+constexpr double bars_of_zero = 3.0;
+// Against the largest exponent or the frequency of events: chaos may be weak, and means of regular motion converge
+// fast.
+constexpr double small_bar = 1e-4;
+
+}  // namespace
+
+ExponentSigns signs_of(const LyapunovSpectrum& spectrum) {
+  ExponentSigns signs;
+  double scale = spectrum.time > 0.0 ? static_cast<double>(spectrum.events) / spectrum.time : 0.0;
+  for (const double exponent : spectrum.exponents)
+    if (std::isfinite(exponent)) scale = std::max(scale, std::abs(exponent));
+  for (Index j = 0; j < spectrum.exponents.size(); ++j) {
+    if (spectrum.is_structural(j)) continue;
+    const double exponent = spectrum.exponents(j);
+    const double zero = bars_of_zero * spectrum.errors(j);
+    if (exponent > zero)
+      ++signs.positive;
+    else if (exponent < -zero)
+      ++signs.negative;
+    else if (spectrum.errors(j) < small_bar * scale)
+      ++signs.zero;
+    else
+      ++signs.unclear;
+  }
+  return signs;
+}
+
+AttractorKind kind_by_exponents(const LyapunovSpectrum& spectrum) {
+  const ExponentSigns signs = signs_of(spectrum);
+  if (signs.positive > 0) return AttractorKind::chaotic;
+  if (signs.unclear > 0) return AttractorKind::none;
+  if (signs.zero > 0) return AttractorKind::quasi_periodic;
+  if (signs.negative == 0) return AttractorKind::none;
+  return spectrum.structural.empty() ? AttractorKind::rest : AttractorKind::periodic;
+}
+
+std::string largest_exponents_text(const LyapunovSpectrum& spectrum) {
+  std::string text;
+  int told = 0;
+  for (Index j = 0; j < spectrum.exponents.size() && told < 2; ++j) {
+    if (spectrum.is_structural(j)) continue;
+    text += fmt::format("{}{:.4g} (bar {:.1g})", told++ > 0 ? ", " : "", spectrum.exponents(j), spectrum.errors(j));
+  }
+  return text;
+}
+
+namespace {
+
+constexpr double vanishing = 32 * std::numeric_limits<double>::epsilon();
+
+}  // namespace
+
+OrthonormalFrame::OrthonormalFrame(Index n, Index columns)
+    : v_(n, columns),
+      qr_(n, columns),
+      growth_(VectorXd::Zero(columns)),
+      taken_(VectorXd::Zero(columns)),
+      workspace_(n) {
+  for (Index j = 0; j < columns; ++j)
+    for (Index i = 0; i < n; ++i)
+      v_(i, j) =
+          (i == j ? 1.0 : 0.0) + 0.5 * std::sin(1.0 + 3.7 * static_cast<double>(i) + 5.3 * static_cast<double>(j));
+  orthonormalise();
+  growth_.setZero();
+}
+
+void OrthonormalFrame::orthonormalise(bool may_vanish) {
+  const double size = v_.cwiseAbs().maxCoeff();
+  qr_.compute(v_);
+  for (Index j = 0; j < v_.cols(); ++j) {
+    const double r = std::abs(qr_.matrixQR()(j, j));
+    const bool vanishes = r <= vanishing * size;
+    if (vanishes && may_vanish)
+      growth_(j) = -std::numeric_limits<double>::infinity();
+    else
+      growth_(j) += std::log(vanishes ? vanishing * size : r);
+  }
+  v_.setIdentity();
+  qr_.householderQ().applyThisOnTheLeft(v_, workspace_);
+}
+
+const VectorXd& OrthonormalFrame::take_growth() {
+  taken_ = growth_;
+  growth_.setZero();
+  return taken_;
+}
+
+void QrAccumulator::pass(const MatrixXd& matrix, double duration) {
+  if (!matrix.allFinite()) {
+    ++left_out_;
+    return;
+  }
+  frame_.vectors() = matrix * frame_.vectors();
+  frame_.orthonormalise();
+  series_.add(frame_.take_growth(), duration);
+}
+
+LyapunovSpectrum QrAccumulator::spectrum() const {
+  LyapunovSpectrum spectrum = series_.spectrum();
+  spectrum.events = series_.pieces();
+  spectrum.tangential = left_out_;
   return spectrum;
 }
 

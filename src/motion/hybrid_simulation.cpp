@@ -1,23 +1,191 @@
 #include "motion/hybrid_simulation.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "base/user_error.hpp"
 #include "model/event_at.hpp"
 #include "model/mode_dimensions.hpp"
+#include "model/relevant_events.hpp"
 #include "model/undefined_value.hpp"
-#include "motion/watched_flow.hpp"
 
 namespace tchat {
 
 namespace {
 
-using Eigen::RowVectorXd;
 using Eigen::VectorXd;
+
+void add_once(std::vector<int>& events, int event) {
+  if (std::find(events.begin(), events.end(), event) == events.end()) events.push_back(event);
+}
+
+std::string one(const IndexVector& v) { return fmt::format("({},{},{})", v.field, v.event, v.jump); }
+
+}  // namespace
+
+std::string state_text(const VectorXd& x) {
+  constexpr Eigen::Index most_shown = 12;
+  const Eigen::Index shown = std::min(x.size(), most_shown);
+  const std::string more = x.size() > shown ? fmt::format(", and {} more", x.size() - shown) : "";
+  return fmt::format("({:.6g}{})", fmt::join(x.begin(), x.begin() + shown, ", "), more);
+}
+
+std::vector<int> Mode::terminal_events() const {
+  std::vector<int> events;
+  for (const IndexVector& v : index_vectors) add_once(events, v.event);
+  return events;
+}
+
+std::vector<int> Mode::all_events() const {
+  std::vector<int> events = terminal_events();
+  for (const int event : monitored) add_once(events, event);
+  return events;
+}
+
+const IndexVector& Mode::ended_by(int event) const {
+  return *std::find_if(index_vectors.begin(), index_vectors.end(), [&](const auto& v) { return v.event == event; });
+}
+
+std::string fault_of(const HybridSystem& system, const std::vector<IndexVector>& index_vectors) {
+  if (index_vectors.empty()) return "no index vector at all";
+  const auto limit = [&](const char* what, int index, FunctionKind kind, const IndexVector& v) -> std::string {
+    if (index >= 1 && index <= system.count(kind)) return "";
+    return fmt::format("{}: {} {} does not exist, {} has 1..{}", one(v), what, index, system.name(),
+                       system.count(kind));
+  };
+  for (const IndexVector& v : index_vectors) {
+    for (const std::string& fault :
+         {limit("field", v.field, FunctionKind::field, v), limit("event function", v.event, FunctionKind::event, v),
+          limit("jump", v.jump, FunctionKind::jump, v)})
+      if (!fault.empty()) return fault;
+    if (v.field != index_vectors.front().field)
+      return fmt::format("{} and {}: index vectors watched together must have the same field",
+                         one(index_vectors.front()), one(v));
+  }
+  return "";
+}
+
+Mode ModeRule::of_cycle(const IndexVector& from, const VectorXd& x, const VectorXd& par) const {
+  Mode mode = cycle_[position_];
+  if (monitor_ == Monitor::as_given) return mode;
+  const auto following = system_.successors(from, x.data(), par.data()).value_or(std::vector<IndexVector>{});
+  const bool goes_on =
+      std::any_of(following.begin(), following.end(), [&](const IndexVector& v) { return v.field == mode.field(); });
+  if (!goes_on) return mode;
+  mode.monitored = relevant_events(system_, following, mode.field(), x.data(), par.data());
+  std::erase(mode.monitored, mode.index_vectors.front().event);
+  return mode;
+}
+
+Mode ModeRule::first(const VectorXd& x, const VectorXd& par) {
+  position_ = 0;
+  if (is_cyclic()) return of_cycle(cycle_.back().index_vectors.front(), x, par);
+  if (start_) return *start_;
+  const auto start = system_.successors({0, 0, 0}, x.data(), par.data());
+  if (!start || start->empty())
+    throw UserError(
+        fmt::format("{} does not say in which mode a simulation starts (its successors of (0,0,0) at the start); say "
+                    "which index vectors to watch, as in --mode 1,2,1 or --mode '1,2,1;1,3,2'",
+                    system_.name()));
+  if (const std::string fault = fault_of(system_, *start); !fault.empty())
+    throw UserError(
+        fmt::format("the successors that {} gives for a start, (0,0,0), cannot be watched: {}", system_.name(), fault));
+  return {*start, {}};
+}
+
+Mode ModeRule::next(const IndexVector& from, const VectorXd& x, const VectorXd& par) {
+  if (is_cyclic()) {
+    position_ = (position_ + 1) % cycle_.size();
+    return of_cycle(from, x, par);
+  }
+  const auto next = system_.successors(from, x.data(), par.data());
+  const std::string fault = next ? fault_of(system_, *next) : "it cannot be evaluated";
+  if (fault.empty()) return {*next, {}};
+  fault_ = fmt::format("the index jump function (successors) of {} at the end of {}, x = {}: {}", system_.name(),
+                       one(from), state_text(x), fault);
+  return {};
+}
+
+namespace {
+
+VectorXd image_of(const HybridSystem& system, const IndexVector& index, const VectorXd& x, const VectorXd& par) {
+  VectorXd image(x.size());
+  system.value(FunctionKind::jump, index.jump, x.data(), par.data(), image.data());
+  return image;
+}
+
+/// |h| up to which x counts as on the surface of a start.
+double widest_on_surface(const EventAt& at, const VectorXd& x, double rounding) {
+  const double typed = start_tolerance * at.gradient.cwiseProduct(x).cwiseAbs().sum();
+  return std::max(typed, rounding * at.scale(x.data()));
+}
+
+/// Does the jump send x to a point of the same surface where h falls again, in a mode that watches the event?
+bool falls_again(ModeRule rule, const IndexVector& index, const VectorXd& x, const VectorXd& par, double rounding) {
+  const HybridSystem& system = rule.system();
+  const Mode next = rule.next(index, x, par);
+  if (next.index_vectors.empty()) return false;
+  const std::vector<int> events = next.terminal_events();
+  if (std::find(events.begin(), events.end(), index.event) == events.end()) return false;
+  const VectorXd image = image_of(system, index, x, par);
+  if (!image.allFinite()) return false;
+  const EventAt at = event_at(system, index.event, next.field(), image.data(), par.data());
+  return std::abs(at.h) <= widest_on_surface(at, image, rounding) && at.rate() < 0.0;
+}
+
+/// Nothing where the event needs no decision: the start is away from its surface, or the jump changes nothing.
+std::optional<SurfaceStart> judge(const ModeRule& rule, const IndexVector& index, const VectorXd& x,
+                                  const VectorXd& par, const StartSide& side, double rounding) {
+  const HybridSystem& system = rule.system();
+  const EventAt at = event_at(system, index.event, index.field, x.data(), par.data());
+  if (!(at.rate() < 0.0) || std::abs(at.h) > widest_on_surface(at, x, rounding)) return std::nullopt;
+  const bool is_on = std::abs(at.h) <= rounding * at.scale(x.data());
+  const bool is_wall = reverses_flow(system, index, x, par);
+  SurfaceStart start{index, at.h, false, false};
+  if (side.given == StartSide::Given::after && (side.event == index.event || (side.event == 0 && !is_wall))) {
+    start.is_after = true;
+    return start;
+  }
+  if (side.given != StartSide::Given::before && is_wall) return is_on ? std::optional(start) : std::nullopt;
+  if (!is_wall && !moves_state(system, index, x, par, rounding)) return std::nullopt;
+  if (side.given == StartSide::Given::before) return start;
+  start.is_undecided = true;
+  start.is_after = (is_on || at.h < 0.0) && falls_again(rule, index, x, par, rounding);
+  return is_on || start.is_after ? std::optional(start) : std::nullopt;
+}
+
+}  // namespace
+
+bool reverses_flow(const HybridSystem& system, const IndexVector& index, const VectorXd& x, const VectorXd& par) {
+  const VectorXd image = image_of(system, index, x, par);
+  const double before = event_at(system, index.event, index.field, x.data(), par.data()).rate();
+  const double after = event_at(system, index.event, index.field, image.data(), par.data()).rate();
+  return before * after < 0.0;
+}
+
+bool moves_state(const HybridSystem& system, const IndexVector& index, const VectorXd& x, const VectorXd& par,
+                 double rounding) {
+  return (image_of(system, index, x, par) - x).norm() > rounding * (1.0 + x.norm());
+}
+
+std::vector<SurfaceStart> surface_starts(const ModeRule& rule, const Mode& mode, const VectorXd& x, const VectorXd& par,
+                                         const StartSide& side, double rounding) {
+  std::vector<SurfaceStart> starts;
+  for (const IndexVector& index : mode.index_vectors) {
+    const bool is_known = std::any_of(starts.begin(), starts.end(),
+                                      [&](const SurfaceStart& start) { return start.index.event == index.event; });
+    if (is_known) continue;
+    if (const auto start = judge(rule, index, x, par, side, rounding)) starts.push_back(*start);
+  }
+  return starts;
+}
+
+namespace {
+
+using Eigen::RowVectorXd;
 
 constexpr int points_of_piece = 4;  // looked at in each integration step; kept, before thinning
 

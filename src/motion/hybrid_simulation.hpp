@@ -1,26 +1,133 @@
-/// A hybrid system run forward in time, one segment after the other.
-///
-///     x' = f_i(x, p) until the first h_j of the current mode falls to zero,   x -> g_k(x, p),   next mode
-///
-/// What decides the next mode is in mode_rule.hpp. When two event functions come to zero together the first in the
-/// mode's order ends the segment and the other one, if the flow still goes through it after the jump, a segment of zero
-/// duration. What a start on a surface means is in surface_start.hpp. Trouble is a value:
-/// an integration that fails, an event after whose jump the flow leaves the region h >= 0 again at once (it sticks).
+/// A hybrid system run forward in time: which events it watches, how it starts on an event surface, and its segments.
 #pragma once
 
 #include <Eigen/Core>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "motion/event_watch.hpp"
-#include "motion/flow_options.hpp"
-#include "motion/mode_rule.hpp"
-#include "motion/surface_start.hpp"
+#include "model/hybrid_system.hpp"
+#include "model/index_vector.hpp"
+#include "motion/watched_flow.hpp"
 
 namespace tchat {
+
+// What a simulation watches next: the set of index vectors of the current segment, all with the same field. Whichever
+// of their event functions falls first ends the segment and decides the jump and the next set.
+//
+// With the problem's index jump function iota the next set is iota_I(x). Without it the index vectors of a signature
+// follow each other cyclically, one at a time; the event functions monitored on each segment are looked at as well,
+// but end nothing.
+
+struct Mode {
+  std::vector<IndexVector> index_vectors;  ///< not empty; priority of the first when two events come together
+  std::vector<int> monitored;              ///< events that end nothing
+  bool operator==(const Mode&) const = default;
+
+  int field() const { return index_vectors.front().field; }
+  /// Event functions that can end the segment, each once, in order.
+  std::vector<int> terminal_events() const;
+  /// Those and the monitored ones.
+  std::vector<int> all_events() const;
+  /// The first index vector with this event function.
+  const IndexVector& ended_by(int event) const;
+};
+
+class ModeRule {
+ public:
+  /// By the problem's index jump function, from `start` or, if that is not given, from what iota says of a start.
+  explicit ModeRule(const HybridSystem& system, std::optional<Mode> start = {})
+      : system_(system), start_(std::move(start)) {}
+  /// What a mode of a cycle monitors.
+  enum class Monitor {
+    as_given,
+    what_follows,  ///< the events of the index jump function's index vectors, but Poincare sections
+  };
+  /// Cyclically through modes of one index vector each.
+  ModeRule(const HybridSystem& system, std::vector<Mode> cycle, Monitor monitor = Monitor::as_given)
+      : system_(system), cycle_(std::move(cycle)), monitor_(monitor) {}
+
+  const HybridSystem& system() const { return system_; }
+  bool is_cyclic() const { return !cycle_.empty(); }
+
+  /// The mode at a start x. Throws UserError when it says
+  /// nothing.
+  Mode first(const Eigen::VectorXd& x, const Eigen::VectorXd& par);
+  /// The mode after a segment `from` that ends, before its jump, at x; without index vectors, and the reason in
+  /// fault(), when iota cannot be evaluated or gives nothing that can be simulated.
+  Mode next(const IndexVector& from, const Eigen::VectorXd& x, const Eigen::VectorXd& par);
+  const std::string& fault() const { return fault_; }
+
+ private:
+  /// Mode `position_` of the cycle after `from`, which ended at x.
+  Mode of_cycle(const IndexVector& from, const Eigen::VectorXd& x, const Eigen::VectorXd& par) const;
+
+  const HybridSystem& system_;
+  std::optional<Mode> start_;
+  std::vector<Mode> cycle_;
+  Monitor monitor_ = Monitor::as_given;
+  std::string fault_;
+  std::size_t position_ = 0;
+};
+
+/// "" when the index vectors exist in the problem and have one field; otherwise what is wrong with them.
+std::string fault_of(const HybridSystem& system, const std::vector<IndexVector>& index_vectors);
+
+/// "(0.1, 2)", with the digits that people need to see a difference; the first twelve entries of a large state.
+std::string state_text(const Eigen::VectorXd& x);
+
+// On which side of an event a simulation begins whose first state lies on that event's surface, h_j = 0, with h_j
+// falling: before the event, which then happens at once, or after it.
+//
+// The state alone cannot decide. If the jump sends it to a point of the surface where h_j falls again, as the heel
+// strike of a walker does, it is taken as a state after the event. If the jump takes it off the surface, as the reset
+// of a clock does, or sends the flow back, as a wall does, it is taken as a state before the event.
+
+/// The start of a simulation counts as on the surface up to |h_j| = start_tolerance sum_i |h_x,i x_i|, wherever the
+/// state is known to be one after the event or may be: states are typed with few digits.
+constexpr double start_tolerance = 1e-4;
+
+struct StartSide {
+  enum class Given {
+    nothing,  ///< the jump decides, as above
+    after,    ///< of `event`, or of any event that is no wall if `event` is 0
+    before,
+  } given = Given::nothing;
+  int event = 0;
+};
+
+/// An event on whose surface the simulation begins, with h_j falling.
+struct SurfaceStart {
+  IndexVector index;
+  double h = 0.0;
+  bool is_after = false;      ///< false: the event happens at once
+  bool is_undecided = false;  ///< nothing was given, and the jump decided
+};
+
+/// Does the jump send the flow back from the surface, as an impact does?
+bool reverses_flow(const HybridSystem& system, const IndexVector& index, const Eigen::VectorXd& x,
+                   const Eigen::VectorXd& par);
+/// Does the jump take the state from the surface to another place? `rounding` is relative.
+bool moves_state(const HybridSystem& system, const IndexVector& index, const Eigen::VectorXd& x,
+                 const Eigen::VectorXd& par, double rounding);
+
+/// Of the index vectors of `mode`, the first one of `rule`, at the start x. |h| / (1 + |h_x| |x|) up to `rounding` is
+/// zero.
+std::vector<SurfaceStart> surface_starts(const ModeRule& rule, const Mode& mode, const Eigen::VectorXd& x,
+                                         const Eigen::VectorXd& par, const StartSide& side, double rounding);
+
+// A hybrid system run forward in time, one segment after the other.
+//
+//     x' = f_i(x, p) until the first h_j of the current mode falls to zero,   x -> g_k(x, p),   next mode
+//
+// What decides the next mode is in ModeRule. When two event functions come to zero together the first in
+// the mode's order ends the segment and the other one, if the flow still goes through it after the jump, a segment of
+// zero duration. What a start on a surface means is in SurfaceStart. Trouble is a value: an integration that
+// fails, an event after whose jump the flow leaves the region h >= 0 again at once (it sticks).
 
 class WatchedFlow;
 

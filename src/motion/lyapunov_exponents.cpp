@@ -12,9 +12,9 @@
 #include "model/event_at.hpp"
 #include "model/finite_derivatives.hpp"
 #include "motion/cvodes_flow.hpp"
-#include "motion/event_watch.hpp"
-#include "motion/recurrence.hpp"
+#include "motion/simulation_run.hpp"
 #include "motion/tangent_flow.hpp"
+#include "motion/watched_flow.hpp"
 
 namespace tchat {
 

@@ -28,10 +28,9 @@
 #include <memory>
 
 #include "model/hybrid_system.hpp"
-#include "motion/flow_options.hpp"
 #include "motion/growth_series.hpp"
 #include "motion/hybrid_simulation.hpp"
-#include "motion/qr_accumulator.hpp"
+#include "motion/watched_flow.hpp"
 
 namespace tchat {
 

@@ -3,7 +3,7 @@
 ///
 ///     y - R(y) = 0,   (Id - M) dy = R(y) - y,   y moved onto the event's surface after each step
 ///
-/// with R and M of motion/simulated_turn.hpp. A state that nothing depends on keeps its value and has no equation.
+/// with R and M of motion/tangent_flow.hpp. A state that nothing depends on keeps its value and has no equation.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "motion/found_orbit.hpp"
-#include "motion/simulated_turn.hpp"
+#include "motion/tangent_flow.hpp"
 
 namespace tchat {
 

@@ -1,12 +1,156 @@
 #include "motion/simulation_run.hpp"
 
-#include <deque>
 #include <limits>
 
-#include "motion/decay.hpp"
-#include "motion/recurrence.hpp"
+#include "linear/dense_matrix.hpp"
+#include "orbit/equilibrium_system.hpp"
 
 namespace tchat {
+
+namespace {
+
+constexpr double shrunk = 1e-3;
+constexpr std::size_t ratios = 10;  // compared with each other
+constexpr double agreement = 0.1;   // of 1 - rho
+constexpr int too_many_zeros = 50;
+
+}  // namespace
+
+void ChatteringDetector::add(const IndexVector& index, double duration) {
+  segments_.push_back({index, duration});
+  if (segments_.size() > most_kept) segments_.pop_front();
+  zeros_ = duration > 0.0 ? 0 : zeros_ + 1;
+  const std::size_t last = segments_.size() - 1;
+  for (std::size_t q = 1; q <= longest_pattern; ++q) {
+    const bool is_shorter = last >= q && segments_[last - q].index == index && duration < segments_[last - q].duration;
+    shrinking_[q] = is_shorter ? shrinking_[q] + 1 : 0;
+  }
+}
+
+std::optional<ChatteringDetector::Accumulation> ChatteringDetector::accumulation() const {
+  if (zeros_ >= too_many_zeros) return Accumulation{0.0, 0.0, 1};
+  for (std::size_t q = 1; q <= longest_pattern; ++q)
+    if (const auto found = accumulation(q)) return found;
+  return std::nullopt;
+}
+
+std::optional<ChatteringDetector::Accumulation> ChatteringDetector::accumulation(std::size_t q) const {
+  if (segments_.empty()) return std::nullopt;
+  const std::size_t turns = std::min(shrinking_[q], segments_.size() - 1) / q;
+  if (turns < 3 || shrinking_[q] < ratios) return std::nullopt;
+  const std::size_t last = segments_.size() - 1;
+  if (!(segments_[last].duration < shrunk * segments_[last - q * turns].duration)) return std::nullopt;
+
+  double sum = 0.0;
+  double least = 1.0;
+  double largest = 0.0;
+  for (std::size_t k = last + 1 - ratios; k <= last; ++k) {
+    const double ratio = segments_[k].duration / segments_[k - q].duration;
+    sum += ratio;
+    least = std::min(least, ratio);
+    largest = std::max(largest, ratio);
+  }
+  const double ratio = sum / static_cast<double>(ratios);
+  if (largest - least > agreement * (1.0 - ratio)) return std::nullopt;
+  double turn = 0.0;
+  for (std::size_t k = last + 1 - q; k <= last; ++k) turn += segments_[k].duration;
+  return Accumulation{turn * ratio / (1.0 - ratio), ratio, static_cast<int>(q)};
+}
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+bool is_ignored(const std::vector<bool>& ignorable, Eigen::Index i) {
+  const auto k = static_cast<std::size_t>(i);
+  return k < ignorable.size() && ignorable[k];
+}
+
+/// Clears the flags of the states that a function depends on; a jump may only pass a state on.
+void keep_independent(const HybridSystem& system, FunctionKind kind, const VectorXd& x, const VectorXd& par,
+                      std::vector<bool>& flags) {
+  const int n = system.dimension();
+  const int rows = kind == FunctionKind::event ? 1 : n;
+  for (int index = 1; index <= system.count(kind); ++index) {
+    VectorXd value(rows);
+    MatrixXd dx(rows, n);
+    double no_parameters = 0.0;
+    system.first(kind, index, x.data(), par.data(), {}, value.data(), dx.data(), &no_parameters);
+    if (kind == FunctionKind::jump) dx -= MatrixXd::Identity(n, n);
+    for (int c = 0; c < n; ++c)
+      if (!(dx.col(c).lpNorm<Eigen::Infinity>() <= 1e-12)) flags[static_cast<std::size_t>(c)] = false;
+  }
+}
+
+}  // namespace
+
+void Recurrence::add(const SimulatedSegment& segment) {
+  ends_.push_back({segment.index, segment.after, segment.low, segment.high});
+  if (ends_.size() > 2 * static_cast<std::size_t>(max_period_)) ends_.pop_front();
+}
+
+std::optional<int> Recurrence::period() const {
+  for (std::size_t p = 1; 2 * p <= ends_.size(); ++p)
+    if (repeats(p)) return static_cast<int>(p);
+  return std::nullopt;
+}
+
+VectorXd Recurrence::scale(std::size_t segments) const {
+  VectorXd low = back(0).low;
+  VectorXd high = back(0).high;
+  for (std::size_t i = 1; i < segments; ++i) {
+    low = low.cwiseMin(back(i).low);
+    high = high.cwiseMax(back(i).high);
+  }
+  VectorXd range = high - low;
+  double largest = 0.0;
+  for (Eigen::Index i = 0; i < range.size(); ++i)
+    if (!is_ignored(ignorable_, i)) largest = std::max(largest, range(i));
+  // States that hardly move are compared on the scale of the others.
+  range.array() += 1e-3 * largest;
+  for (Eigen::Index i = 0; i < range.size(); ++i)
+    if (is_ignored(ignorable_, i)) range(i) = std::numeric_limits<double>::infinity();
+  return range;
+}
+
+Signature Recurrence::last(std::size_t segments) const {
+  Signature signature;
+  for (std::size_t i = segments; i > 0; --i) signature.push_back(back(i - 1).index);
+  return signature;
+}
+
+bool Recurrence::repeats_events(std::size_t period) const {
+  if (period == 0 || 2 * period > ends_.size()) return false;
+  for (std::size_t i = 0; i < period; ++i)
+    if (back(i).index != back(i + period).index) return false;
+  return true;
+}
+
+double Recurrence::difference(std::size_t period) const {
+  const VectorXd scale = this->scale(2 * period);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < period; ++i) {
+    const VectorXd d = (back(i).after - back(i + period).after).cwiseAbs();
+    for (Eigen::Index k = 0; k < d.size(); ++k)
+      if (d(k) != 0.0) largest = std::max(largest, d(k) / scale(k));
+  }
+  return largest;
+}
+
+bool Recurrence::repeats(std::size_t period) const {
+  // Where nothing moves the motion rests.
+  return repeats_events(period) && difference(period) <= tolerance_ && scale(2 * period).maxCoeff() > 0.0;
+}
+
+std::vector<bool> ignorable_states(const HybridSystem& system, const std::vector<VectorXd>& points,
+                                   const VectorXd& par) {
+  std::vector<bool> flags(static_cast<std::size_t>(system.dimension()), !points.empty());
+  for (const VectorXd& x : points)
+    for (const FunctionKind kind : {FunctionKind::field, FunctionKind::event, FunctionKind::jump})
+      keep_independent(system, kind, x, par, flags);
+  return flags;
+}
 
 namespace {
 
@@ -97,6 +241,73 @@ SimulationResult run_simulation(HybridSimulation& simulation, const SimulationPl
   }
   if (!result.accumulation && !result.dies_out) observation.finish();
   return result;
+}
+
+namespace {
+
+using Eigen::Index;
+using Eigen::RowVectorXd;
+
+constexpr double rounding = 1e-9;  // of real parts, relative to |f_x|
+constexpr std::size_t least_states = 4;
+constexpr double no_movement = 1e-3;  // relative to 1 + |x|
+constexpr double there = 1e-8;        // distance that integration cannot tell from zero, relative to 1 + |x|
+constexpr double at_surface = 1e-6;   // the same from the surface of an event
+constexpr double least_fall = 1e-3;   // of distances, relative to the last one
+
+/// An equilibrium whose f_x has no eigenvalue with a positive real part.
+std::optional<VectorXd> attracting_equilibrium(const HybridSystem& system, int field, const VectorXd& near,
+                                               const VectorXd& par, const std::vector<Index>& ignorable) {
+  const std::optional<NearbyEquilibrium> found = find_equilibrium(system, field, near, par.data(), ignorable);
+  if (!found) return std::nullopt;
+  const bool attracts = (eigenvalues(found->jacobian).real().array() <= rounding * found->jacobian.norm()).all();
+  return attracts ? std::optional(found->state) : std::nullopt;
+}
+
+bool is_on_surface(const HybridSystem& system, int event, const VectorXd& x, const VectorXd& par) {
+  double h = 0.0;
+  RowVectorXd gradient(x.size());
+  system.first(FunctionKind::event, event, x.data(), par.data(), {}, &h, gradient.data(), nullptr);
+  return std::abs(h) <= at_surface * (1.0 + x.norm()) * gradient.norm();
+}
+
+/// Of falling distances.
+bool fall_to_zero(const std::vector<double>& distances) {
+  const std::size_t space = (distances.size() - 1) / 2, last = distances.size() - 1;
+  const double end = distances[last];
+  const double before = distances[last - 2 * space] - distances[last - space], after = distances[last - space] - end;
+  if (!(before + after >= least_fall * end)) return false;
+  return after >= before || end - after * after / (before - after) <= 0.5 * end;
+}
+
+}  // namespace
+
+std::optional<VectorXd> reached_equilibrium(const HybridSystem& system, const SimulatedSegment& last,
+                                            const VectorXd& par, const std::vector<Index>& ignorable) {
+  const int field = last.mode.field();
+  VectorXd f(last.end.size());
+  system.value(FunctionKind::field, field, last.end.data(), par.data(), f.data());
+  for (const Index k : ignorable) f(k) = 0.0;
+  if (!(f.norm() * last.duration <= no_movement * (1.0 + last.end.norm()))) return std::nullopt;
+  return attracting_equilibrium(system, field, last.end, par, ignorable);
+}
+
+std::optional<VectorXd> approached_equilibrium(const HybridSystem& system, const IndexVector& index,
+                                               const std::vector<VectorXd>& states, std::size_t least,
+                                               const VectorXd& par, const std::vector<Index>& ignorable) {
+  if (states.size() < least_states) return std::nullopt;
+  const std::optional<VectorXd> rest = attracting_equilibrium(system, index.field, states.back(), par, ignorable);
+  if (!rest || !is_on_surface(system, index.event, *rest, par)) return std::nullopt;
+  const double nothing = there * (1.0 + rest->norm());
+  std::vector<double> falling;  // the last distances, as long as each is smaller than the one before it, or nothing
+  for (const VectorXd& state : states) {
+    VectorXd d = state - *rest;
+    for (const Index k : ignorable) d(k) = 0.0;
+    if (!falling.empty() && !(d.norm() < falling.back()) && !(d.norm() <= nothing)) falling.clear();
+    falling.push_back(d.norm());
+  }
+  if (falling.size() < std::max(least_states, least)) return std::nullopt;
+  return falling.back() <= nothing || fall_to_zero(falling) ? rest : std::nullopt;
 }
 
 }  // namespace tchat

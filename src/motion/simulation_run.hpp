@@ -1,15 +1,124 @@
-/// A simulation of wanted length: what is dropped as transient, whether it settles on a periodic orbit or dies out,
-/// whether events accumulate.
+/// Simulations of wanted length and how they settle: recurrence, accumulation of events, and convergence to equilibria.
 #pragma once
 
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <deque>
 #include <functional>
+#include <map>
 #include <optional>
 #include <vector>
 
-#include "motion/chattering.hpp"
+#include "model/hybrid_system.hpp"
+#include "model/index_vector.hpp"
 #include "motion/hybrid_simulation.hpp"
 
 namespace tchat {
+
+// Accumulation of events (chattering, Zeno): durations that shrink geometrically towards zero, so that infinitely many
+// events happen in finite time.
+//
+// With a pattern of q events, T_k / T_{k-q} -> rho < 1; what remains is (T_{k-q+1} + ... + T_k) rho / (1 - rho).
+
+class ChatteringDetector {
+ public:
+  struct Accumulation {
+    double remaining = 0.0;  ///< time from the last event to the limit
+    double ratio = 0.0;      ///< rho
+    int pattern = 1;         ///< q
+  };
+
+  /// The next segment: what ended it and how long it lasted.
+  void add(const IndexVector& index, double duration);
+  /// When durations have shrunk by a factor of 1000 and the last ratios agree; at once after many zero durations.
+  std::optional<Accumulation> accumulation() const;
+
+ private:
+  static constexpr std::size_t longest_pattern = 8;
+  static constexpr std::size_t most_kept = 100000;  // a simulation may be endless
+  struct Segment {
+    IndexVector index;
+    double duration;
+  };
+  std::optional<Accumulation> accumulation(std::size_t pattern) const;
+
+  std::deque<Segment> segments_;                     // the last `most_kept`
+  std::size_t shrinking_[longest_pattern + 1] = {};  // how many last segments were shorter than those q before
+  int zeros_ = 0;                                    // last segments of no duration
+};
+
+// A motion that comes to rest keeps its events, but goes through them ever more slowly.
+
+class DecayDetector {
+ public:
+  /// The next segment: what ended it, and h_x f there.
+  void add(const IndexVector& index, double event_velocity) {
+    double& largest = largest_[index];
+    largest = std::max(largest, std::abs(event_velocity));
+    slow_ = std::abs(event_velocity) < next_to_nothing * largest ? slow_ + 1 : 0;
+  }
+  /// The last events' h_x f were next to nothing of what it was.
+  bool dies_out() const { return slow_ >= 4; }
+
+ private:
+  static constexpr double next_to_nothing = 1e-12;
+  std::map<IndexVector, double> largest_;
+  int slow_ = 0;  // last events
+};
+
+// Does a simulation repeat itself? Ends of segments are compared with earlier ones.
+//
+// Period p is recognised when each of the last p segments ended by the same index vector and, after its jump, in the
+// same state as the one p segments before. States are equal when they differ by less than a tolerance times the range
+// of the orbit over those 2 p segments, so that a motion that dies out is not taken for an orbit.
+//
+// A state that no function depends on and no jump changes but by adding to it (a position on an endless floor) may
+// advance: it is ignorable, and the other states alone are compared.
+
+class Recurrence {
+ public:
+  /// `ignorable` has one entry for each state.
+  Recurrence(int max_period, double tolerance) : max_period_(max_period), tolerance_(tolerance) {}
+
+  void ignore(const std::vector<bool>& ignorable) { ignorable_ = ignorable; }
+  /// A segment that ended in an event.
+  void add(const SimulatedSegment& segment);
+  /// The smallest period in segments.
+  std::optional<int> period() const;
+
+  std::size_t size() const { return ends_.size(); }
+  /// Index vectors of the last segments, in the order of time.
+  Signature last(std::size_t segments) const;
+  /// Have the last `period` segments ended by the index vectors of those before them?
+  bool repeats_events(std::size_t period) const;
+  /// Largest difference of the last `period` states from those before them, in units of scale(2 period).
+  double difference(std::size_t period) const;
+  /// Range of each state over the last segments, at least 1e-3 of the largest; infinite where a state is ignored.
+  Eigen::VectorXd scale(std::size_t segments) const;
+
+ private:
+  struct End {
+    IndexVector index;
+    Eigen::VectorXd after;
+    Eigen::VectorXd low, high;  // of the states on the segment
+  };
+  bool repeats(std::size_t period) const;
+  const End& back(std::size_t i) const { return ends_[ends_.size() - 1 - i]; }
+
+  int max_period_;
+  double tolerance_;
+  std::vector<bool> ignorable_;
+  std::deque<End> ends_;  // the last 2 max_period
+};
+
+/// Which states nothing depends on: zero columns in f_x and h_x, and a unit column in g_x, of all functions at
+/// `points`.
+std::vector<bool> ignorable_states(const HybridSystem& system, const std::vector<Eigen::VectorXd>& points,
+                                   const Eigen::VectorXd& par);
+
+// A simulation of wanted length: what is dropped as transient, whether it settles on a periodic orbit or dies out,
+// whether events accumulate.
 
 /// How long, and what is looked for. Without `time` and `events`: until the motion repeats itself.
 struct SimulationPlan {
@@ -42,5 +151,25 @@ struct SimulationResult {
 SimulationResult run_simulation(HybridSimulation& simulation, const SimulationPlan& plan,
                                 const std::function<void(const SimulatedSegment&)>& kept,
                                 const std::function<bool(const SimulatedSegment&)>& has_settled = {});
+
+// Whether a trajectory converges to an equilibrium of its field.
+
+/// An equilibrium whose f_x has no eigenvalue with a positive real part, found by Newton's method from the end of a
+/// motion that has had no event for so long (SegmentEnd::no_event) that its speed times that duration is nothing.
+/// States that nothing depends on (`ignorable`, from 0) keep their values, and may move.
+std::optional<Eigen::VectorXd> reached_equilibrium(const HybridSystem& system, const SimulatedSegment& last,
+                                                   const Eigen::VectorXd& par,
+                                                   const std::vector<Eigen::Index>& ignorable);
+
+/// Such an equilibrium that states at events of one kind, in the order of time, converge to: each of the last `least`
+/// of them, or of more, is nearer than the one before it, or there to 1e-8. The surface of the event goes through it,
+/// as no state on the surface could come near it otherwise. Where they are not there yet, the distances fall by more
+/// than errors of the integration may make of a motion that keeps its energy, and their limit by Aitken's formula, from
+/// three of them at equal spaces, is below half of the last one: else they may come to a cycle round the equilibrium.
+/// Slow convergence, as 1/t, is not told from that.
+std::optional<Eigen::VectorXd> approached_equilibrium(const HybridSystem& system, const IndexVector& index,
+                                                      const std::vector<Eigen::VectorXd>& states, std::size_t least,
+                                                      const Eigen::VectorXd& par,
+                                                      const std::vector<Eigen::Index>& ignorable);
 
 }  // namespace tchat

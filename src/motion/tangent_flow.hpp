@@ -1,26 +1,31 @@
-/// Tangent vectors carried along a known trajectory x(t) of a field: V' = A(t) V, A(t) = f_x(x(t), p).
-///
-/// One step is V -> exp(Omega) V with Omega the Magnus series to sixth order from A at the three Gauss points (Blanes,
-/// Casas, Oteo and Ros, Physics Reports 470, 2009, section 5.4): with h the step, A_1, A_2, A_3 in order,
-///
-///     a1 = h A_2,   a2 = sqrt(15)/3 h (A_3 - A_1),   a3 = 10/3 h (A_3 - 2 A_2 + A_1),
-///     C1 = [a1, a2],   C2 = -1/60 [a1, 2 a3 + C1],
-///     Omega = a1 + a3 / 12 + 1/240 [-20 a1 - a3 + C1, a2 + C2].
-///
-/// Exact, whatever the step, where A is constant. To fourth order the last term is -1/12 [a1, a2]; where the difference
-/// of both is too large, or A changes too much for its quadrature, or |h A| is so large that columns would become
-/// parallel, the step is halved. Allocates nothing
-/// after construction.
+/// Tangent vectors along a trajectory, and one turn of a simulation with its derivative.
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "model/hybrid_system.hpp"
-#include "motion/event_watch.hpp"
-#include "motion/qr_accumulator.hpp"
+#include "model/index_vector.hpp"
+#include "motion/growth_series.hpp"
+#include "motion/hybrid_simulation.hpp"
+#include "motion/watched_flow.hpp"
 
 namespace tchat {
+
+// Tangent vectors carried along a known trajectory x(t) of a field: V' = A(t) V, A(t) = f_x(x(t), p).
+//
+// One step is V -> exp(Omega) V with Omega the Magnus series to sixth order from A at the three Gauss points (Blanes,
+// Casas, Oteo and Ros, Physics Reports 470, 2009, section 5.4): with h the step, A_1, A_2, A_3 in order,
+//
+//     a1 = h A_2,   a2 = sqrt(15)/3 h (A_3 - A_1),   a3 = 10/3 h (A_3 - 2 A_2 + A_1),
+//     C1 = [a1, a2],   C2 = -1/60 [a1, 2 a3 + C1],
+//     Omega = a1 + a3 / 12 + 1/240 [-20 a1 - a3 + C1, a2 + C2].
+//
+// Exact, whatever the step, where A is constant. To fourth order the last term is -1/12 [a1, a2]; where the difference
+// of both is too large, or A changes too much for its quadrature, or |h A| is so large that columns would become
+// parallel, the step is halved. Allocates nothing
+// after construction.
 
 class TangentFlow {
  public:
@@ -54,5 +59,26 @@ class TangentFlow {
   Eigen::MatrixXd omega_, term_, product_;
   Eigen::VectorXd f_;
 };
+
+// One turn of a simulation, from the state in which an event is met to that of a later one, with its derivative.
+//
+//     y -> R(y),   M = R_y = P_m Phi_m g_{k_{m-1},x} ... P_1 Phi_1 g_{k_m,x},   P_s = Id - f h_x / (h_x f)    (2.26)
+//
+// States are those before the jumps; Phi_s is the Jacobian of the flow over segment s, k_m the jump of the event that
+// the simulation has just met. All events that the simulation watches are watched.
+
+struct SimulatedTurn {
+  std::vector<SimulatedSegment> segments;
+  Eigen::MatrixXd derivative;  ///< M, n x n; empty when it was not wanted
+  std::string fault;           ///< why there is no such turn; "" when there is
+  bool is_smooth = true;       ///< false: the fault is that a derivative does not exist
+
+  const Eigen::VectorXd& end() const { return segments.back().end; }  ///< R(y), n
+};
+
+/// From the last event of `at`, met in the state y, as long as segments end by `expected`. A segment that ends
+/// otherwise, or tangentially where the derivative is wanted, is a fault.
+SimulatedTurn simulate_turn(const HybridSimulation& at, const Eigen::VectorXd& y, const Signature& expected,
+                            SimulationSettings settings, bool with_derivative);
 
 }  // namespace tchat

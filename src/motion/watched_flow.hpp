@@ -1,17 +1,126 @@
-/// One initial value problem x' = f_i(x, p), x(0) = x0, whose event functions are watched: what a hybrid simulation
-/// asks of an integrator.
+/// Flows x' = f_i(x, p) with events: options of integration, event functions between steps, and the explicit Runge-
+/// Kutta pair. cvodes_flow.hpp has the other integrator.
 #pragma once
 
 #include <Eigen/Core>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "motion/event_watch.hpp"
-#include "motion/flow_options.hpp"
+#include "model/hybrid_system.hpp"
 
 namespace tchat {
+
+// Settings of forward integration.
+
+enum class IntegrationMethod {
+  adams,        ///< order up to 12; for problems that are not stiff, and for the highest accuracy
+  bdf,          ///< order up to 5; for stiff problems
+  runge_kutta,  ///< order 5; for many short flows of problems that are not stiff; no variational equations
+};
+
+struct FlowOptions {
+  IntegrationMethod method = IntegrationMethod::adams;
+  /// Of one step; a segment's error is about ten times that. Multipliers near grazing need this much; problems with
+  /// large derivatives may fail to converge and want 1e-12. CVODES refuses less than 2e-16.
+  double relative_tolerance = 1e-15;
+  double absolute_tolerance = 1e-16;
+  double max_duration = 1e3;        ///< give up waiting for an event after this time
+  long max_steps = 100000;          ///< of the integrator, for one segment
+  double surface_tolerance = 1e-9;  ///< |h| / (1 + |h_x| |x|) below this: the start is on the event surface
+  bool variational = true;          ///< integrate the flow Jacobian along
+  std::vector<int> active;          ///< PAR indices, from 1, by which derivatives are wanted (needs `variational`)
+};
+
+// The event functions h_j watched along one flow, looked at from one integration step to the next: does one of them
+// fall through zero, and where does one come near zero without reaching it?
+//
+// Only an *armed* event can fall, one whose h has been positive. At the start: h > tolerance is armed; a start on the
+// surface (|h| within tolerance, as after an impact or on a section) that leaves upwards is armed as soon as h > 0;
+// one that leaves downwards, a start below zero, and a start just after the event, when h has risen again. The start
+// itself never counts.
+//
+// h_P = h_x f tells where h is least between two looks (2.57-2.60), so that a pair of crossings inside one step is
+// found; a least value that is not below zero is a contact.
+
+/// x(t) inside the last integration step; valid until the next call.
+using DenseOutput = std::function<const double*(double t)>;
+
+class EventWatch {
+ public:
+  /// A local minimum of h that does not reach zero.
+  struct Contact {
+    int event = 0;
+    double time = 0.0;
+    double h = 0.0;
+    Eigen::VectorXd state;
+  };
+  struct Fall {
+    int event = 0;
+    double time = 0.0;
+  };
+
+  /// A view of `system` and `par`, which outlive this object. `tolerance` on |h| / (1 + |h_x| |x|) says what is on the
+  /// surface at the start x0 (time 0); of the events `after`, which have just happened, the start is on the surface
+  /// whatever h.
+  EventWatch(const HybridSystem& system, int field, const std::vector<int>& events, const Eigen::VectorXd& par,
+             const double* x0, double tolerance, const std::vector<int>& after = {});
+
+  int count() const { return static_cast<int>(events_.size()); }
+  /// h_j and then h_x f of every event: 2 count() values, falling and rising through zero at what is looked for. False
+  /// when an h cannot be evaluated.
+  bool roots(const double* x, double* out) const;
+
+  /// Looks at the flow from the time last looked at to `time`; the first fall, if there is one, is where the next look
+  /// begins. `is_root`, if not null, tells which of roots() the integrator has located at `time`.
+  std::optional<Fall> look(double time, const DenseOutput& state, const int* is_root);
+
+  /// Contacts seen since the last call.
+  std::vector<Contact> take_contacts();
+  bool is_armed(int event) const;
+  /// h_j, and its rate h_x f: 0 where it cannot be evaluated.
+  double value(int event, const double* x) const { return system_.event(event, x, par_.data()); }
+  double rate(int event, const double* x) const;
+
+ private:
+  /// h_j, its rate h_x f (0 where it cannot be evaluated), and what rounding of the state makes of h.
+  struct Value {
+    double h = 0.0, rate = 0.0, scale = 1.0;
+  };
+  void set_field(const double* x) const;
+  Value on_field(int event, const double* x) const;  // the field has been set
+  Value at(int event, const double* x) const;
+
+  enum class Readiness { below, leaving_upwards, armed };
+  struct Watched {
+    int event;
+    Readiness readiness;
+    double h, rate;    // at the time last looked at
+    double tolerance;  // |h| / (1 + |h_x| |x|) up to this has not risen
+  };
+
+  /// When this event falls in (time_, end], where its h and rate are now those given; updates its readiness.
+  std::optional<double> fall(Watched& watched, double end, double h, double rate, bool is_minimum,
+                             const DenseOutput& state);
+  void look_again_from(double time, const DenseOutput& state);
+
+  const HybridSystem& system_;
+  int field_;
+  const Eigen::VectorXd& par_;
+  double time_ = 0.0;
+  std::vector<Watched> events_;
+  // What is looked at at every step is kept here.
+  std::vector<Watched> before_;
+  std::vector<double> now_;
+  mutable Eigen::VectorXd f_;
+  mutable Eigen::RowVectorXd h_x_;
+  std::vector<Contact> contacts_;
+};
+
+// One initial value problem x' = f_i(x, p), x(0) = x0, whose event functions are watched: what a hybrid simulation
+// asks of an integrator.
 
 enum class Progress { root, end_time, stopped, failed };
 
@@ -22,7 +131,7 @@ class WatchedFlow {
   WatchedFlow& operator=(const WatchedFlow&) = delete;
   virtual ~WatchedFlow() = default;
 
-  /// Stop where one of these event functions falls through zero (event_watch.hpp says what counts). Once, before the
+  /// Stop where one of these event functions falls through zero (EventWatch says what counts). Once, before the
   /// first advance(). The flow begins just after the events `after`.
   virtual void watch(const std::vector<int>& events, const std::vector<int>& after) = 0;
   void watch(const std::vector<int>& events) { watch(events, {}); }
@@ -53,5 +162,39 @@ class WatchedFlow {
 /// ParameterLayout.
 std::unique_ptr<WatchedFlow> make_flow(const HybridSystem& system, int field, const Eigen::VectorXd& x0,
                                        const Eigen::VectorXd& par, const FlowOptions& options);
+
+// A watched flow by the explicit Runge-Kutta pair of Dormand and Prince, order 5(4), with dense output between its
+// steps. For many short flows of problems that are not stiff, such as a sweep's: ten times cheaper than a multistep
+// method, which begins anew with small steps after each event.
+//
+// Events are found on the dense output, whose error is larger than the steps' own; the state there is a step of the
+// method itself, to the time where Newton's method on such steps finds h = 0.
+
+class RungeKuttaFlow final : public WatchedFlow {
+ public:
+  /// The tolerances and limits of `options`; no variational equations.
+  RungeKuttaFlow(const HybridSystem& system, int field, const Eigen::VectorXd& x0, const Eigen::VectorXd& par,
+                 const FlowOptions& options);
+  RungeKuttaFlow(const RungeKuttaFlow&) = delete;
+  RungeKuttaFlow& operator=(const RungeKuttaFlow&) = delete;
+  ~RungeKuttaFlow() override;
+
+  using WatchedFlow::watch;
+  void watch(const std::vector<int>& events, const std::vector<int>& after) override;
+  void on_piece(std::function<bool(double from, double to)> observer) override;
+  Progress advance(double end_time) override;
+  int fallen() const override;
+  std::vector<EventWatch::Contact> take_contacts() override;
+  bool is_armed(int event) const override;
+  Eigen::VectorXd state_at(double t) const override;
+  const DenseOutput& dense_output() const override;
+  double time() const override;
+  Eigen::VectorXd state() const override;
+  const std::string& message() const override;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> p_;
+};
 
 }  // namespace tchat

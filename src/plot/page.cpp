@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "motion/attractor_kind.hpp"
+#include "motion/growth_series.hpp"
 #include "plot/page_figure.hpp"
 #include "plot/page_files.hpp"
 

@@ -9,7 +9,6 @@
 #include "model/hybrid_system.hpp"
 #include "motion/found_orbit.hpp"
 #include "motion/hybrid_simulation.hpp"
-#include "motion/orbit_samples.hpp"
 #include "settings/run_settings.hpp"
 
 namespace tchat {

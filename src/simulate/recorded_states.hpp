@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "model/hybrid_system.hpp"
-#include "motion/event_watch.hpp"
+#include "motion/watched_flow.hpp"
 
 namespace tchat {
 

@@ -11,7 +11,7 @@
 
 #include "base/user_error.hpp"
 #include "model/index_vector.hpp"
-#include "motion/attractor_kind.hpp"
+#include "motion/growth_series.hpp"
 
 namespace tchat {
 

@@ -9,7 +9,7 @@
 
 #include "model/hybrid_system.hpp"
 #include "model/parameter_vector.hpp"
-#include "motion/attractor_kind.hpp"
+#include "motion/growth_series.hpp"
 
 namespace tchat {
 

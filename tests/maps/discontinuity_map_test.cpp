@@ -7,7 +7,7 @@
 
 #include "base/user_error.hpp"
 #include "maps/grazing_problems.hpp"
-#include "motion/segment_flow.hpp"
+#include "motion/orbit_flow.hpp"
 
 using namespace tchat;
 using namespace tchat::test;

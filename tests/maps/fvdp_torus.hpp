@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "composite_map_problems.hpp"
-#include "motion/segment_flow.hpp"
+#include "motion/orbit_flow.hpp"
 
 namespace tchat::test {
 

@@ -5,7 +5,7 @@
 #include "composite_map_problems.hpp"
 #include "maps/smooth_return.hpp"
 #include "maps/suspended_system.hpp"
-#include "motion/segment_flow.hpp"
+#include "motion/orbit_flow.hpp"
 #include "support/random_matrices.hpp"
 
 using namespace tchat;

@@ -5,7 +5,7 @@
 #include "base/user_error.hpp"
 #include "fvdp_torus.hpp"
 #include "maps/torus_return.hpp"
-#include "motion/segment_flow.hpp"
+#include "motion/orbit_flow.hpp"
 
 using namespace tchat;
 using namespace tchat::test;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "motion/qr_accumulator.hpp"
+#include "motion/growth_series.hpp"
 
 using namespace tchat;
 using Eigen::Matrix2d;

@@ -4,8 +4,8 @@
 
 #include "lyapunov_problems.hpp"
 #include "motion/attractor_search.hpp"
-#include "motion/equilibrium_approach.hpp"
-#include "motion/exponent_signs.hpp"
+#include "motion/growth_series.hpp"
+#include "motion/simulation_run.hpp"
 #include "support/linear_oscillator.hpp"
 
 using namespace tchat;

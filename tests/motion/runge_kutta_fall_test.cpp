@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "motion/cvodes_flow.hpp"
-#include "motion/runge_kutta_flow.hpp"
+#include "motion/watched_flow.hpp"
 #include "support/van_der_pol.hpp"
 
 using namespace tchat;

@@ -3,7 +3,7 @@
 
 #include "../hybrid/linear_oscillator.hpp"
 #include "motion/found_orbit.hpp"
-#include "motion/recurrence.hpp"
+#include "motion/simulation_run.hpp"
 #include "simulated_problems.hpp"
 
 using namespace tchat;

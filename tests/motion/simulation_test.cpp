@@ -8,7 +8,6 @@
 #include "../hybrid/linear_oscillator.hpp"
 #include "base/user_error.hpp"
 #include "motion/orbit_flow.hpp"
-#include "motion/segment_flow.hpp"
 #include "support/van_der_pol.hpp"
 
 using namespace tchat;

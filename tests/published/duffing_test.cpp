@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "motion/segment_flow.hpp"
+#include "motion/orbit_flow.hpp"
 #include "published/makefile_run.hpp"
 #include "published/newton.hpp"
 #include "support/test_system.hpp"
