@@ -1,16 +1,44 @@
-/// What continuation produces: the points of a branch, handed one by one to whoever writes them, and a summary.
+/// The points of a branch as continuation hands them out, changes of stability without a label, and the step size.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "continuation/newton_result.hpp"
-#include "continuation/path_point.hpp"
-#include "continuation/point_data.hpp"
+#include "continuation/newton_chord.hpp"
+#include "continuation/path_follower.hpp"
 #include "orbit/admissibility.hpp"
+#include "orbit/event_minima.hpp"
 #include "stability/test_function.hpp"
 
 namespace tchat {
+
+// What is known about a converged point besides the orbit.
+
+struct PointData {
+  FloquetMultipliers multipliers;
+  std::vector<double> transversalities;  ///< h_x f / (|h_x| |f|) at the end of each segment
+  double singular_distance = 1.0;        ///< as in TestedPoint
+  double estimated_error = 0.0;          ///< of the states between mesh points, relative
+  std::vector<EventCourse> courses;      ///< of the monitored event functions
+  std::vector<TestValue> tests;          ///< one for each test function
+  std::vector<std::string> details;      ///< of a labelled point
+};
+
+/// A test function that is zero within its uncertainty all along a branch.
+struct VanishingFunction {
+  std::string name;
+  std::string reason;  ///< "" where none is known
+};
+
+/// A converged step of length ds and what is known of the point that it has come to.
+struct Candidate {
+  PathPoint point;
+  double ds = 0.0;
+  PointData data;
+};
+
+// What continuation produces: the points of a branch, handed one by one to whoever writes them, and a summary.
 
 struct FamilyFacts;
 
@@ -99,6 +127,80 @@ struct BranchSummary {
   std::optional<double> worst_unfolding = {};  ///< largest lambda of orbits that conserve a function
   std::vector<LostPoint> lost;                 ///< special points that may be missing
   std::vector<VanishingFunction> vanishing;    ///< test functions without zeros to look for
+};
+
+// Changes of the number of unstable multipliers along a branch that no label explains.
+
+struct UnlabelledChange {
+  LostPoint point;
+  bool is_through_one;  ///< of one real multiplier: on a curve that holds monitors that need not be a special point
+};
+
+class StabilityWatch {
+ public:
+  /// An accepted point.
+  struct Point {
+    int number;
+    double parameter;  ///< the principal one
+    const SpecialPoint& special;
+    const FloquetMultipliers& multipliers;
+  };
+
+  /// Points before it are forgotten.
+  void begin(const Point& point);
+
+  /// The change since the last point whose multipliers are known. Nothing where there is none, where a bifurcation or
+  /// an impact velocity through zero is labelled in between, or `is_reported`: a special point that may be missing is.
+  std::optional<UnlabelledChange> add(const Point& point, bool is_reported);
+
+ private:
+  void remember(const Point& point);
+
+  struct Known {
+    double parameter;
+    FloquetMultipliers multipliers;
+  };
+  std::optional<Known> known_;
+};
+
+// Step length control of pseudo-arclength continuation (DS, DSMIN, DSMAX, IADS), with AUTO's rules.
+
+struct StepSettings {
+  double initial = 0.01;  ///< DS, signed
+  double minimum = 0.0;   ///< DSMIN
+  double maximum = 0.1;   ///< DSMAX
+  int adapt_every = 1;    ///< IADS; 0 keeps the step fixed
+  int max_newton = 8;     ///< ITNW
+};
+
+class StepSize {
+ public:
+  explicit StepSize(const StepSettings& settings);
+
+  double value() const { return ds_; }
+
+  /// Much shorter than both the first and the largest step: no reason to halve for the sake of test functions.
+  bool is_short() const;
+
+  /// Is the length due for adaptation after point number `point`?
+  bool adapts_at(int point) const;
+  bool is_longest() const;
+  /// What converged() makes of the length.
+  double after(int iterations) const;
+
+  /// After point number `point` converged in `iterations`: grow or shrink by the work it took, not beyond DSMAX.
+  ///     iterations <= 1: x 2;  2: x 1.5;  3..ITNW/2: x 1.1;  >= ITNW: x 0.5;  otherwise unchanged
+  void converged(int iterations, int point);
+
+  /// After a failure: halve. False when the step is fixed or would fall below the minimum: the branch ends.
+  bool failed();
+
+  /// DSMIN, but never below 1e-10 max(|DS|, DSMAX).
+  double smallest() const;
+
+ private:
+  StepSettings settings_;
+  double ds_;
 };
 
 }  // namespace tchat

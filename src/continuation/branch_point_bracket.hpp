@@ -1,24 +1,27 @@
-/// Location of a zero where Newton's matrix is singular: a branch point within a continuation step.
-///
-/// A trial step right on top of a branch point fails, or comes out anywhere within the square root of rounding, or on
-/// the other branch. So no trial step goes there. Trial points close in on the zero from both sides at a distance that
-/// shrinks with the bracket; between them the branch is smooth, and the zero is placed by interpolation:
-///
-///     test function      polynomial through the nearest four points, along the arclength of the step,
-///     orbit, tangent     cubic Hermite between the two ends of the bracket,
-///
-/// until the place no longer moves and the interpolated orbit satisfies the equations to rounding. The latter may be
-/// out of reach: trial points are as accurate as Newton's tolerances, and the closer the matrix comes to a singular
-/// one, the less accurate are its solutions. When the place begins to move again, the bracket goes back to where it
-/// moved least. The same cubic is the start of Newton's method at trial points, which keeps them on the branch.
+/// Location of branch points within a step, and whether steps are short enough to see every change of sign.
 #pragma once
 
 #include <functional>
 #include <limits>
+#include <span>
 
-#include "continuation/point_data.hpp"
+#include "continuation/branch.hpp"
 
 namespace tchat {
+
+// Location of a zero where Newton's matrix is singular: a branch point within a continuation step.
+//
+// A trial step right on top of a branch point fails, or comes out anywhere within the square root of rounding, or on
+// the other branch. So no trial step goes there. Trial points close in on the zero from both sides at a distance that
+// shrinks with the bracket; between them the branch is smooth, and the zero is placed by interpolation:
+//
+//     test function      polynomial through the nearest four points, along the arclength of the step,
+//     orbit, tangent     cubic Hermite between the two ends of the bracket,
+//
+// until the place no longer moves and the interpolated orbit satisfies the equations to rounding. The latter may be
+// out of reach: trial points are as accurate as Newton's tolerances, and the closer the matrix comes to a singular
+// one, the less accurate are its solutions. When the place begins to move again, the bracket goes back to where it
+// moved least. The same cubic is the start of Newton's method at trial points, which keeps them on the branch.
 
 class PathFollower;
 
@@ -79,5 +82,24 @@ class BranchPointBracket {
     Side high;
   };
 };
+
+// Do the values of a test function along a branch lie close enough together to see every change of sign?
+//
+// The polynomial through earlier values foretells the next one, and tells with it what lies in between: two zeros
+// between two values of one sign; for a function that oscillates, a dip near to zero there, or a value far from what
+// was expected, is reason enough to look closer.
+
+struct TrendValue {
+  double at;  ///< arclength
+  double value;
+};
+
+/// `past` in the order of the branch, `next` beyond its last one. With fewer than two values there is no trend, and any
+/// next one follows it.
+bool follows_trend(std::span<const TrendValue> past, const TrendValue& next);
+
+/// Have the cubic through the last three values and the next one, and the parabola through the last two, two zeros
+/// between the last one and the next? With fewer than three values there is no cubic.
+bool has_two_zeros(std::span<const TrendValue> past, const TrendValue& next);
 
 }  // namespace tchat

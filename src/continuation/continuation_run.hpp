@@ -6,14 +6,10 @@
 #include <optional>
 
 #include "continuation/branch.hpp"
-#include "continuation/branch_analysis.hpp"
-#include "continuation/branch_bounds.hpp"
-#include "continuation/closed_branch.hpp"
+#include "continuation/branch_limits.hpp"
 #include "continuation/orbit_trend.hpp"
 #include "continuation/path_follower.hpp"
 #include "continuation/special_point_search.hpp"
-#include "continuation/stability_watch.hpp"
-#include "continuation/step_size.hpp"
 #include "orbit/mesh_adaptation.hpp"
 
 namespace tchat {

@@ -1,10 +1,7 @@
 #include "continuation/newton_chord.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "linear/array_kernel.hpp"
 
 namespace tchat {
 

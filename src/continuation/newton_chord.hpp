@@ -1,23 +1,50 @@
-/// Newton-chord iteration for a point of a branch: F(x) = 0, G(x) = 0 if there is a condition, row (x - base) = target
-/// (5.50-5.55).
-///
-/// The first `full_iterations` (NWTN) iterations use a new Jacobian each, later ones the last one (chord), up to
-/// `max_iterations` (ITNW). With a condition every iteration is a full one. Converged when, for the correction just
-/// applied,
-///     |dp| / (1 + |p|) <= tolerance_parameters  for durations and free parameters (EPSL), and
-///     max |du| / (1 + max |u|) < tolerance_states                                (EPSU).
-/// Given up at once when the larger of the two exceeds 20 times its value at the first iteration. Near a branch point
-/// the corrections are rounding, magnified by a nearly singular matrix, and do not get smaller: there a residual at
-/// rounding level is accepted, and such a correction not applied.
+/// Newton's method and Newton-chord iteration for a point of a branch, and their results.
 #pragma once
 
+#include <algorithm>
+#include <string>
 #include <vector>
 
-#include "continuation/newton_result.hpp"
 #include "linear/array_kernel.hpp"
 #include "orbit/bordered_problem.hpp"
 
 namespace tchat {
+
+enum class NewtonStatus { converged, too_many_iterations, diverging, not_finite, singular, condition_lost };
+
+/// One line of the Newton history.
+struct NewtonIteration {
+  int number = 0;
+  double parameter = 0.0;         ///< the first free problem parameter after the correction
+  double parameter_change = 0.0;  ///< largest |dp| / (1 + |p|)
+  double state_change = 0.0;      ///< max |du| / (1 + max |u|)
+  double residual = 0.0;          ///< largest residual before the correction
+  double larger() const { return std::max(parameter_change, state_change); }
+};
+
+struct NewtonResult {
+  NewtonStatus status = NewtonStatus::too_many_iterations;
+  int iterations = 0;
+  double residual = 0.0;  ///< largest, at the last evaluation
+  /// How far x has moved, in the measures of the convergence test, since the factors were computed.
+  double change_since_factorization = 0.0;
+  bool from_tangent = false;  ///< it began on the tangent of the last point
+  bool converged() const { return status == NewtonStatus::converged; }
+};
+
+std::string describe(NewtonStatus status);
+
+// Newton-chord iteration for a point of a branch: F(x) = 0, G(x) = 0 if there is a condition, row (x - base) = target
+// (5.50-5.55).
+//
+// The first `full_iterations` (NWTN) iterations use a new Jacobian each, later ones the last one (chord), up to
+// `max_iterations` (ITNW). With a condition every iteration is a full one. Converged when, for the correction just
+// applied,
+//     |dp| / (1 + |p|) <= tolerance_parameters  for durations and free parameters (EPSL), and
+//     max |du| / (1 + max |u|) < tolerance_states                                (EPSU).
+// Given up at once when the larger of the two exceeds 20 times its value at the first iteration. Near a branch point
+// the corrections are rounding, magnified by a nearly singular matrix, and do not get smaller: there a residual at
+// rounding level is accepted, and such a correction not applied.
 
 struct NewtonSettings {
   int max_iterations = 8;

@@ -1,15 +1,20 @@
-/// What becomes of the orbit along a branch: does it shrink to a point, or a torus to a periodic orbit, does its period
-/// grow without bound?
-///
-/// Of the `orbits` returns of a torus (orbit/torus_system.hpp) the deviation of a node is that from its mean over the
-/// returns: it vanishes on a periodic orbit, run through so many times.
+/// What becomes of orbits along a branch: limits that they tend to, and the analysis that each family provides.
 #pragma once
 
 #include <optional>
+#include <string>
 
+#include "orbit/defining_system.hpp"
 #include "orbit/orbit.hpp"
+#include "stability/test_function.hpp"
 
 namespace tchat {
+
+// What becomes of the orbit along a branch: does it shrink to a point, or a torus to a periodic orbit, does its period
+// grow without bound?
+//
+// Of the `orbits` returns of a torus (orbit/torus_system.hpp) the deviation of a node is that from its mean over the
+// returns: it vanishes on a periodic orbit, run through so many times.
 
 /// Largest minus least value of each state over the orbit, n entries.
 Eigen::VectorXd state_ranges(const Orbit& x);
@@ -52,6 +57,58 @@ class OrbitTrend {
   Eigen::VectorXd sizes_;    // largest moduli of the states
   Place still_;              // since when the parameter has stood still
   Place last_;
+};
+
+// What a period that grows without bound tends to: an orbit that begins and ends at an equilibrium.
+
+/// A sentence where `x`, the last orbit of a branch whose period has grown so, comes near an equilibrium of its field;
+/// "" where it does not: then the period grows for another reason (the parameter scales time, a flight takes longer, a
+/// conservative system has a family of orbits). The equilibrium is found by Newton's method from the slowest mesh
+/// point.
+std::string homoclinic_limit(const DefiningSystem& system, const Orbit& x, const PeriodGrowth& growth,
+                             const std::string& parameter_name);
+
+// What a branch of solutions of one family needs while it is computed: the multipliers of a point, where the branch
+// ends of itself, what its last point tends to. A DefiningSystem makes the analysis of its own kind of solutions
+// (make_analysis); the classes are in src/kinds.
+
+struct FamilyFacts;
+struct PathPoint;
+
+class BranchAnalysis {
+ public:
+  virtual ~BranchAnalysis() = default;
+
+  virtual const FamilyFacts& facts() const = 0;
+  /// Multipliers, or what takes their place. `condensed` holds the linearisation at x.
+  virtual void find_multipliers(const CondensedSystem& condensed, const Orbit& x, FloquetMultipliers& result) = 0;
+
+  /// Have equal solutions equal states at equal tau? No where nothing fixes the phase.
+  virtual bool has_fixed_phase() const { return true; }
+  /// May the solutions shrink to a point along a branch, which ends there?
+  virtual bool may_shrink() const { return false; }
+  /// The special point at which a branch ends because x has shrunk, with a description.
+  virtual SpecialPoint shrunk(const Orbit& x) const;
+  /// Why no solution lies beyond the step of signed length ds between two points, or at its end; "" where one may.
+  virtual std::string passed_infinity(const PathPoint& /*from*/, const PathPoint& /*to*/, double /*ds*/) const {
+    return "";
+  }
+  /// The period has passed zero on a step: what happened; "".
+  virtual std::string passed_zero(const Orbit& /*from*/, const Orbit& /*to*/) const { return ""; }
+  /// The same of the duration of a segment.
+  virtual std::string passed_zero_segment(const Orbit& /*from*/, const Orbit& /*to*/) const { return ""; }
+  /// What x, the last point of a branch whose period has grown so, tends to, in a sentence; "" if nothing is known.
+  virtual std::string tendency(const Orbit& /*x*/, const PeriodGrowth&, const std::string& /*parameter_name*/) const {
+    return "";
+  }
+
+  /// Why the first point of a branch, corrected from `start`, is no solution of this family, with a cure; "" if it is.
+  virtual std::string why_no_solution(const Orbit& /*first*/, const Orbit& /*start*/,
+                                      const std::string& /*source*/) const {
+    return "";
+  }
+  /// What a user might change where no first point is found near `start`.
+  virtual std::string start_advice(const Orbit& start) const;
 };
 
 }  // namespace tchat

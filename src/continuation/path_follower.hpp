@@ -1,24 +1,95 @@
-/// Pseudo-arclength continuation of a defining system: starting, predicting, correcting (5.50-5.55).
-///
-/// A path point carries its unit tangent in the weighted norm, oriented along the branch. A step of length ds predicts
-/// x + ds v, or as its predictor says (predictor.hpp), and corrects with <v, x_new - x> = ds; the tangent at the
-/// new point comes from the factors of its linearisation, which stay available for multipliers and test functions. A
-/// prediction of higher order is brought nearer by chord iterations with the factors at hand, so that one more matrix
-/// is enough; where Newton's method fails from it or takes much of it back, that along the tangent is taken. Everything
-/// else that a step begins from is in the point that it goes from: trials before it, failed ones too, leave no trace
-/// beyond rounding.
+/// Pseudo-arclength continuation: points of a branch, the points before them, and the steps between.
 #pragma once
 
+#include <array>
 #include <memory>
+#include <vector>
 
-#include "continuation/monitor_set.hpp"
 #include "continuation/newton_chord.hpp"
-#include "continuation/path_point.hpp"
 #include "continuation/predictor.hpp"
+#include "continuation/solution_measure.hpp"
 #include "orbit/collocation_rule.hpp"
+#include "orbit/defining_system.hpp"
 #include "orbit/mesh_adaptation.hpp"
+#include "orbit/orbit.hpp"
 
 namespace tchat {
+
+// Where a branch has come from: the points before a path point, for predictors that use them.
+//
+// A trail is a value that belongs to its point. Trial steps that fail leave no trace in it.
+
+struct PathPoint;
+class MeshTransfer;
+
+class PathTrail {
+ public:
+  static constexpr int most = 3;
+
+  PathTrail() = default;
+  /// With space for the points that it will add itself; empty.
+  PathTrail(const OrbitShape& shape, int global_count);
+  PathTrail(const PathTrail& other);
+  PathTrail& operator=(const PathTrail& other);
+  PathTrail(PathTrail&&) = default;
+  PathTrail& operator=(PathTrail&&) = default;
+  ~PathTrail() = default;
+
+  bool empty() const { return count_ == 0; }
+  void clear();
+
+  /// The trail of a point that was reached from this one: its trail and itself.
+  void follow(const PathPoint& from, const std::vector<int>& free_parameters);
+  /// The same points, and this one, which lies beside or ahead of the point that the trail belongs to.
+  void add(const PathPoint& point, const std::vector<int>& free_parameters);
+
+  /// Moves all points.
+  void change_mesh(const std::vector<double>& mesh, const MeshTransfer& transfer);
+
+  /// A point as a vector, and its unit tangent.
+  struct Mark {
+    OrbitVector place;
+    OrbitVector tangent;
+  };
+  int count() const { return count_; }
+  const Mark& mark(int k) const { return *marks_[index(k)]; }  ///< the newest is number 0
+  const std::vector<double>& mesh() const { return mesh_; }
+
+ private:
+  static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+  std::shared_ptr<Mark> unused_mark();
+
+  std::array<std::shared_ptr<const Mark>, most> marks_;  // shared with the trails of other points
+  // Space for the points that this trail adds or moves to another mesh, made when it is needed: the first to be in no
+  // trail is the next to be used. Two take turns where two points follow each other by turns; a point that is kept on
+  // its old mesh has the moved one's marks twice.
+  std::array<std::shared_ptr<Mark>, static_cast<std::size_t>(2 * most + 2)> own_;
+  int count_ = 0;
+  std::vector<double> mesh_;
+};
+
+// A point of a branch, with what the next step from it needs.
+
+struct PathPoint {
+  Orbit orbit;
+  OrbitVector tangent;     ///< unit length
+  OrbitVector dual;        ///< <tangent, .> on the orbit's mesh
+  ConditionMemory memory;  ///< of a two-parameter curve's condition
+  PathTrail trail = {};    ///< points before it
+  /// Newton's second correction over the square of the first, from the tangent: the last that is known, 0 for none.
+  double newton_constant = 0.0;
+};
+
+// Pseudo-arclength continuation of a defining system: starting, predicting, correcting (5.50-5.55).
+//
+// A path point carries its unit tangent in the weighted norm, oriented along the branch. A step of length ds predicts
+// x + ds v, or as its predictor says (predictor.hpp), and corrects with <v, x_new - x> = ds; the tangent at the
+// new point comes from the factors of its linearisation, which stay available for multipliers and test functions. A
+// prediction of higher order is brought nearer by chord iterations with the factors at hand, so that one more matrix
+// is enough; where Newton's method fails from it or takes much of it back, that along the tangent is taken. Everything
+// else that a step begins from is in the point that it goes from: trials before it, failed ones too, leave no trace
+// beyond rounding.
 
 /// What is known of a number of iterations: it is one of these.
 struct IterationRange {

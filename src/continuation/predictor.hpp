@@ -1,7 +1,4 @@
-/// How the next point of a branch is predicted, before Newton's method corrects it.
-///
-/// A predictor has no memory of its own: what it needs of earlier points is in the trail of the point that it starts
-/// from, so that trial steps leave no trace. A new one is a class with its own file and a line in make_predictor().
+/// Predictors of the next point of a branch: along the tangent, and of higher order by earlier points.
 #pragma once
 
 #include <memory>
@@ -10,6 +7,11 @@
 #include "orbit/orbit.hpp"
 
 namespace tchat {
+
+// How the next point of a branch is predicted, before Newton's method corrects it.
+//
+// A predictor has no memory of its own: what it needs of earlier points is in the trail of the point that it starts
+// from, so that trial steps leave no trace. A new one is a class with its own file and a line in make_predictor().
 
 struct PathPoint;
 
@@ -37,5 +39,27 @@ class Predictor {
 
 /// The predictor of all branches. `free_parameters` are the PAR indices of the defining system.
 std::unique_ptr<Predictor> make_predictor(const std::vector<int>& free_parameters);
+
+// A predictor of higher order, by the points that the branch has come from.
+//
+// Near a point A with unit tangent v the branch is the graph y(s) = A + s v + w(s) over its tangent, <v, w> = 0,
+// w(0) = w'(0) = 0. Of an earlier point B with unit tangent t
+//
+//     s_B = <v, B - A>,    w(s_B) = B - A - s_B v,    w'(s_B) = t / <v, t> - v
+//
+// are known without error but that of the points, so that Hermite's interpolation through K of them predicts the point
+// at s = ds with an error of order ds^(2K + 2), in the plane <v, y - A> = ds that Newton's method corrects in. In
+// Newton's form each point adds a term to the prediction along the tangent. The terms are added while they fall; where
+// the first one is no small change of the step, the branch bends too much, and nothing is added.
+
+class HermitePredictor final : public Predictor {
+ public:
+  /// PAR indices of the free parameters of the defining system.
+  explicit HermitePredictor(std::vector<int> free_parameters);
+  Prediction predict(const PathPoint& from, double ds, Orbit& x) const override;
+
+ private:
+  std::vector<int> free_parameters_;
+};
 
 }  // namespace tchat

@@ -9,8 +9,8 @@
 #include <limits>
 #include <span>
 
+#include "continuation/branch_point_bracket.hpp"
 #include "continuation/path_follower.hpp"
-#include "continuation/value_trend.hpp"
 #include "orbit/admissibility.hpp"
 #include "orbit/collocation_rule.hpp"
 #include "orbit/curve_conditions.hpp"

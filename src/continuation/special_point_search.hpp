@@ -6,10 +6,10 @@
 #include <memory>
 #include <optional>
 
-#include "continuation/branch_analysis.hpp"
+#include "continuation/branch.hpp"
 #include "continuation/branch_point_bracket.hpp"
-#include "continuation/newton_result.hpp"
-#include "continuation/point_data.hpp"
+#include "continuation/newton_chord.hpp"
+#include "continuation/orbit_trend.hpp"
 #include "stability/test_function.hpp"
 
 namespace tchat {

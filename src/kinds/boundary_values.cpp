@@ -1,5 +1,5 @@
 /// Boundary value problems: segments with conditions of the problem's own, and their problem types.
-#include "continuation/branch_analysis.hpp"
+#include "continuation/orbit_trend.hpp"
 #include "files/orbit_trace.hpp"
 #include "kinds/families.hpp"
 #include "kinds/orbit_check.hpp"

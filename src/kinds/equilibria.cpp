@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "continuation/branch_analysis.hpp"
+#include "continuation/orbit_trend.hpp"
 #include "kinds/families.hpp"
 #include "kinds/orbit_check.hpp"
 #include "orbit/condensed_system.hpp"

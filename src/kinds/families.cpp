@@ -8,7 +8,7 @@
 
 #include "base/user_error.hpp"
 #include "continuation/branch_limits.hpp"
-#include "continuation/homoclinic_limit.hpp"
+#include "continuation/orbit_trend.hpp"
 #include "files/orbit_trace.hpp"
 #include "kinds/orbit_check.hpp"
 #include "model/identity_jump.hpp"

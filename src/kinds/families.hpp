@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "continuation/branch_analysis.hpp"
+#include "continuation/orbit_trend.hpp"
 #include "files/solution_file.hpp"
 #include "orbit/defining_system.hpp"
 #include "run/data_start.hpp"

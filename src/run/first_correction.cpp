@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/user_error.hpp"
-#include "continuation/branch_analysis.hpp"
+#include "continuation/orbit_trend.hpp"
 #include "continuation/path_follower.hpp"
 #include "files/solution_file.hpp"
 #include "model/undefined_value.hpp"

@@ -1,8 +1,8 @@
 /// The first point of a branch: the start corrected to a solution at the parameter values asked for, and its tangent.
 #pragma once
 
-#include "continuation/newton_result.hpp"
-#include "continuation/path_point.hpp"
+#include "continuation/newton_chord.hpp"
+#include "continuation/path_follower.hpp"
 #include "run/orbit_start.hpp"
 #include "settings/run_settings.hpp"
 

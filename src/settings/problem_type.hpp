@@ -31,7 +31,7 @@ inline constexpr ProblemId equilibrium{1, 1};
 // A family: what a kind of solution is. Periodic orbits, invariant tori, equilibria and boundary value problems are
 // one class each, in one file of src/kinds. A family owns what depends on the kind of a solution: its rules for
 // constants, how a run starts and restarts, the headings of files, the check by integration, the lines of a picture.
-// What a branch of its solutions needs while it is computed is a BranchAnalysis (continuation/branch_analysis.hpp).
+// What a branch of its solutions needs while it is computed is a BranchAnalysis (continuation/orbit_trend.hpp).
 //
 // Other rooms ask a family to do something and never which one it is. They know it by the IPS of constants or labels.
 

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "continuation/homoclinic_limit.hpp"
+#include "continuation/orbit_trend.hpp"
 #include "orbit/curve_conditions.hpp"
 #include "stability/bifurcation_tests.hpp"
 #include "stability/curve_tests.hpp"

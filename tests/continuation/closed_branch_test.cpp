@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "continuation/closed_branch.hpp"
+#include "continuation/branch_limits.hpp"
 #include "stability/bifurcation_tests.hpp"
 #include "stability/recorded_branch.hpp"
 #include "stability/test_function.hpp"

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "continuation/hermite_predictor.hpp"
+#include "continuation/predictor.hpp"
 #include "support/branch_fixture.hpp"
 #include "support/linear_oscillator.hpp"
 

@@ -1,7 +1,7 @@
 // Step length rules: the factors by Newton iterations, the bounds, halving.
 #include <catch2/catch.hpp>
 
-#include "continuation/step_size.hpp"
+#include "continuation/branch.hpp"
 
 using namespace tchat;
 

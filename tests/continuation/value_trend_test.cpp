@@ -1,5 +1,5 @@
 // When the values of an oscillating function are taken for resolved, on functions whose zeros are known.
-#include "continuation/value_trend.hpp"
+#include "continuation/branch_point_bracket.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
