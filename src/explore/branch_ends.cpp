@@ -1,8 +1,11 @@
 #include "explore/branch_ends.hpp"
 
+#include <cstdlib>
 #include <string_view>
 
 #include "base/words.hpp"
+#include "files/diagnostics_file.hpp"
+#include "files/solution_file_reader.hpp"
 
 namespace tchat {
 
@@ -57,6 +60,37 @@ std::string failure_text(const std::string& log) {
       text = line;
   }
   return first_part(text);
+}
+
+AdmissiblePoints admissible_points(const std::string& path) {
+  AdmissiblePoints result;
+  bool some_beyond = false, some_left = false;
+  for (const DiagnosticPoint& point : read_diagnostics_file(path)) {
+    ++result.points;
+    result.inadmissible += point.admissible ? 0 : 1;
+    if (std::abs(point.point) > 1) {
+      some_beyond = true;
+      some_left = some_left || point.admissible;
+    }
+    if (point.label > 0) result.labels[point.label] = point.admissible;
+  }
+  result.only_at_start = some_beyond && !some_left;
+  return result;
+}
+
+int other_field_at_rest(const HybridSystem& system, const LabelledSolution& solution, int field) {
+  constexpr double at_rest = 1e-6;  // a located point is known to EPSS
+  const LabelledSolution own = in_layout(solution, system.layout());
+  const int n = system.dimension();
+  if (own.states.rows() < n || own.states.cols() < 1) return 0;
+  const Eigen::VectorXd x = own.states.col(0).head(n);
+  for (int i = 1; i <= system.count(FunctionKind::field); ++i) {
+    if (i == field) continue;
+    Eigen::VectorXd f(n);
+    system.value(FunctionKind::field, i, x.data(), own.parameters.data(), f.data());
+    if (f.norm() <= at_rest * (1.0 + x.norm())) return i;
+  }
+  return 0;
 }
 
 }  // namespace tchat

@@ -1,22 +1,73 @@
-/// Of which known branch the orbits of a run are a part.
-///
-/// Numbers of the catalogue tell which branches are near. Among those the last labelled orbit of the run that is no
-/// bifurcation, and no impact of velocity zero, decides: the known branch's orbit at exactly the same parameter value,
-/// which it has as a label or which a further run from its nearest label corrects, is the same one or not
-/// (explore/orbit_identity.hpp). Where there is no such orbit, as when the known branch ends before, the numbers decide
-/// alone.
+/// The attractors of a sweep and the orbits of runs: which known branches they belong to, and how many are covered.
 #pragma once
 
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "explore/command_job.hpp"
 #include "explore/exploration_commands.hpp"
+#include "explore/explored_diagram.hpp"
 #include "explore/orbit_catalogue.hpp"
-#include "explore/orbit_identity.hpp"
+#include "files/point_file.hpp"
+#include "model/hybrid_system.hpp"
+#include "simulate/sweep_file.hpp"
 
 namespace tchat {
+
+// The attractors of a sweep, value by value.
+
+/// What one value and start lead to.
+struct SweptAttractor {
+  const SweepAttractor* attractor = nullptr;
+  std::size_t row = 0;
+  double value = 0.0;   ///< of the parameter
+  double period = 0.0;  ///< in time; NaN
+};
+
+class AttractorSamples {
+ public:
+  /// Of no value.
+  AttractorSamples() = default;
+  /// Throws UserError as read_sweep_file() does.
+  AttractorSamples(const std::string& path, const HybridSystem& system)
+      : table_(read_sweep_file(path)), state_names_(ProblemNames::of(system).states) {}
+
+  const SweepTable& table() const { return table_; }
+  void for_each(const std::function<void(const SweptAttractor&)>& use) const;
+  /// How often a value and a start lead to each kind of motion, attractor or not.
+  std::map<AttractorKind, int> kinds() const;
+  /// The columns of these names, NaN for those that are missing.
+  std::vector<double> values_of(const SweptAttractor& sample, const std::vector<std::string>& names) const;
+  /// The first recorded state, of a period that in which its first segment ends; nothing where none is recorded.
+  std::optional<Eigen::VectorXd> numbers_of(const SweptAttractor& sample) const;
+  /// The words of `tchat simulate` that begin there; "" where none is recorded.
+  std::string words_of(const SweptAttractor& sample) const;
+  /// The words of `tchat simulate` that begin on an attractor, where it has been found first.
+  static std::string words_of(const SweepAttractor& attractor);
+  double value_of(const SweepAttractor& attractor) const;
+  /// `count` states of low discrepancy in the least box around the starts and the recorded states, as --state takes
+  /// them.
+  std::vector<std::string> further_starts(int count) const;
+
+ private:
+  /// Rows of a value and start, one of them each.
+  std::vector<std::size_t> first_rows() const;
+
+  SweepTable table_;
+  std::vector<std::string> state_names_;
+};
+
+SignatureWord signature_word(const SweepAttractor& attractor);
+
+// Of which known branch the orbits of a run are a part.
+//
+// Numbers of the catalogue tell which branches are near. Among those the last labelled orbit of the run that is no
+// bifurcation, and no impact of velocity zero, decides: the known branch's orbit at exactly the same parameter value,
+// which it has as a label or which a further run from its nearest label corrects, is the same one or not
+// (explore/orbit_catalogue.hpp). Where there is no such orbit, as when the known branch ends before, the numbers decide
+// alone.
 
 /// Of which branch a section is a part.
 struct KnownBranch {
@@ -50,5 +101,23 @@ class BranchRecognition {
   const HybridSystem& system_;
   JobRunner& runner_;
 };
+
+struct Sweep {
+  std::string letter;  ///< before the numbers of its attractors
+  AttractorSamples samples;
+  std::vector<std::string> monitors;  ///< of branches, which it has columns of in part
+  bool is_cut = false;  ///< by tchat (plugin/problem_library.hpp): its orbits are followed without that section
+};
+
+/// Does a branch begin at such an attractor? At periodic ones and those at rest.
+bool is_followed(const SweepAttractor& attractor);
+
+/// The branches that the attractor of a value lies on: by its state where it rests, else by signature, period and
+/// largest values, which several branches may share.
+std::vector<std::string> branches_of(const OrbitCatalogue& catalogue, const Sweep& sweep, const SweptAttractor& sample);
+
+/// Adds the sweep's counts to the diagram, and its attractors on no branch.
+void measure_coverage(const Sweep& sweep, const OrbitCatalogue& catalogue, const ExplorationCommands& commands,
+                      ExploredDiagram& diagram);
 
 }  // namespace tchat

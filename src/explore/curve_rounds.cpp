@@ -9,7 +9,6 @@
 #include <limits>
 
 #include "base/words.hpp"
-#include "explore/admissible_points.hpp"
 #include "explore/branch_ends.hpp"
 #include "files/solution_file_reader.hpp"
 #include "plugin/problem_setup.hpp"

@@ -13,8 +13,7 @@
 #include <vector>
 
 #include "explore/curve_catalogue.hpp"
-#include "explore/curve_commands.hpp"
-#include "explore/explored_curves.hpp"
+#include "explore/explored_diagram.hpp"
 #include "run/run_remarks.hpp"
 
 namespace tchat {

@@ -1,20 +1,167 @@
 #include "explore/exploration_commands.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cassert>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
+#include <map>
+#include <numeric>
 #include <string_view>
 
 #include "base/number.hpp"
+#include "base/text_file.hpp"
 #include "base/user_error.hpp"
 #include "base/words.hpp"
+#include "files/replaced_file.hpp"
 #include "orbit/quantity.hpp"
 #include "plugin/plugin_build.hpp"
+#include "plugin/problem_setup.hpp"
 #include "settings/problem_type.hpp"
 #include "simulate/sweep_file.hpp"
 
 namespace tchat {
+
+SweptRange read_swept_range(const std::string& option, const std::string& text, bool may_have_count) {
+  const auto refuse = [&] {
+    throw UserError(fmt::format("{} {}: a parameter with the range of its values is needed, as alpha=2.9:3.3{}", option,
+                                in_quotes(text),
+                                may_have_count ? ", or with the number of values, alpha=2.9:3.3:401" : ""));
+  };
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) refuse();
+  SweptRange range{text.substr(0, equals)};
+  std::vector<std::string> parts;
+  for (std::size_t from = equals + 1; from <= text.size();) {
+    const std::size_t to = std::min(text.find(':', from), text.size());
+    parts.push_back(text.substr(from, to - from));
+    from = to + 1;
+  }
+  if (parts.size() < 2 || parts.size() > (may_have_count ? 3 : 2)) refuse();
+  const std::optional<double> a = parse_real(parts[0]), b = parse_real(parts[1]);
+  const std::optional<int> count = parts.size() == 3 ? parse_integer(parts[2]) : std::optional(range.count);
+  if (!a || !b || !(*a < *b) || !count || *count < 2) refuse();
+  range.from = *a, range.to = *b, range.count = *count;
+  return range;
+}
+
+int find_parameter(const std::string& option, const HybridSystem& system, SweptRange& range) {
+  range.parameter = bare_name(range.parameter);
+  const int number = parameter_index(system, range.parameter, option);
+  if (number > system.parameters())
+    throw UserError(fmt::format("{} {}: a duration is no parameter of a simulation", option, range.parameter));
+  if (const std::string name = system.parameter_name(number); system.parameter_index(name) == number)
+    range.parameter = name;
+  return number;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + '\n';
+  return text;
+}
+
+std::string text_of(const std::string& path) { return read_text_if_there(path, "output of a command").value_or(""); }
+
+/// Has it been done, by the same commands, and are its files there?
+bool is_done(const CommandJob& job, const std::string& stamp) {
+  return fs::exists(stamp) && text_of(stamp) == joined(job.lines) &&
+         std::all_of(job.outputs.begin(), job.outputs.end(), [](const std::string& file) { return fs::exists(file); });
+}
+
+/// The folders of commands, that of this program first: a command is to be of the same tchat.
+std::string search_path() {
+  const char* const known = std::getenv("PATH");
+  return fs::read_symlink("/proc/self/exe").parent_path().string() + ":" + (known != nullptr ? known : "/usr/bin:/bin");
+}
+
+/// In the child: the shell becomes the command, which ends when this program does.
+[[noreturn]] void become(const std::string& line, const std::string& log, const std::string& path, pid_t parent) {
+  ::setenv("PATH", path.c_str(), 1);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(127);
+  const int file = ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  const int none = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  ::dup2(none, STDIN_FILENO);
+  ::dup2(file, STDOUT_FILENO);
+  ::dup2(file, STDERR_FILENO);
+  const std::string command = "exec " + line;
+  ::execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
+  ::_exit(127);
+}
+
+}  // namespace
+
+struct JobRunner::Process {
+  std::size_t job = 0;
+  std::size_t line = 0;
+  pid_t id = 0;
+};
+
+void JobRunner::begin_line(const CommandJob& job, Process& process) const {
+  const pid_t parent = ::getpid();
+  const std::string commands = search_path();
+  process.id = ::fork();
+  if (process.id < 0) throw ComputationError(fmt::format("cannot start a process: {}", std::strerror(errno)));
+  if (process.id == 0) become(job.lines[process.line], path(job, ".log"), commands, parent);
+}
+
+std::vector<JobResult> JobRunner::run(const std::vector<CommandJob>& jobs) {
+  std::vector<JobResult> results(jobs.size());
+  std::vector<Process> running;
+  std::size_t next = 0;
+  const auto finish = [&](std::size_t number, bool succeeded) {
+    const CommandJob& job = jobs[number];
+    results[number] = {true, succeeded, text_of(path(job, ".log"))};
+    if (!succeeded) return;
+    ReplacedFile stamp(path(job, ".done"));
+    stamp.write(joined(job.lines));
+    stamp.finish();
+  };
+  while (next < jobs.size() || !running.empty()) {
+    while (next < jobs.size() && static_cast<int>(running.size()) < workers_) {
+      const std::size_t number = next++;
+      const CommandJob& job = jobs[number];
+      if (is_done(job, path(job, ".done"))) {
+        results[number] = {true, true, text_of(path(job, ".log"))};
+        continue;
+      }
+      if (is_over_()) continue;
+      fs::remove(path(job, ".log"));
+      fs::remove(path(job, ".done"));
+      Process process{number};
+      begin_line(job, process);
+      running.push_back(process);
+    }
+    if (running.empty()) continue;
+    int status = 0;
+    const pid_t ended = ::waitpid(-1, &status, 0);
+    if (ended < 0 && errno == EINTR) continue;
+    const auto at = std::find_if(running.begin(), running.end(), [&](const Process& one) { return one.id == ended; });
+    if (at == running.end()) continue;
+    const CommandJob& job = jobs[at->job];
+    const bool succeeded = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    if (succeeded && ++at->line < job.lines.size()) {
+      begin_line(job, *at);
+      continue;
+    }
+    finish(at->job, succeeded);
+    running.erase(at);
+  }
+  return results;
+}
 
 namespace {
 
@@ -206,6 +353,71 @@ std::string ExplorationCommands::show(double value, const std::string& words) co
   parameters.push_back(at_value(value));
   return fmt::format("tchat simulate {}{} {}{}", problem_arguments(problem_), constants_option_, words,
                      shell_words(parameters));
+}
+
+namespace {
+
+/// A word in a rule.
+std::string in_rule(const std::string& word) {
+  std::string text;
+  for (const char c : word) {
+    if (c == '$') text += '$';
+    text += c;
+  }
+  return text;
+}
+
+std::string rule(const CommandJob& job) {
+  std::string text;
+  for (const std::string& file : job.outputs) text += file + " ";
+  text += "&:";
+  for (const std::string& file : job.inputs) text += " " + file;
+  text += " | $(FOLDER)\n";
+  for (const std::string& line : job.lines)
+    text += "\t" + (line.starts_with("tchat ") ? "$(TCHAT)" + in_rule(line.substr(5)) : in_rule(line)) + "\n";
+  return text + "\n";
+}
+
+/// The first files of the jobs that are joined by what they make and need: those of different trees share no file.
+std::vector<std::string> trees(const std::vector<CommandJob>& jobs) {
+  std::map<std::string, std::size_t> maker;
+  for (std::size_t i = 0; i < jobs.size(); ++i)
+    for (const std::string& output : jobs[i].outputs) maker[output] = i;
+  std::vector<std::size_t> tree(jobs.size());
+  std::iota(tree.begin(), tree.end(), std::size_t{0});
+  for (std::size_t i = 0; i < jobs.size(); ++i)
+    for (const std::string& input : jobs[i].inputs)
+      if (const auto made = maker.find(input); made != maker.end())
+        std::replace(tree.begin(), tree.end(), std::size_t{tree[i]}, std::size_t{tree[made->second]});
+  std::map<std::size_t, std::string> files;
+  for (std::size_t i = 0; i < jobs.size(); ++i) files[tree[i]] += " " + jobs[i].outputs.front();
+  std::vector<std::string> result;
+  for (const auto& [number, list] : files) result.push_back(list);
+  return result;
+}
+
+}  // namespace
+
+std::string exploration_makefile(const std::vector<CommandJob>& jobs, const std::vector<CommandJob>& last,
+                                 const std::string& folder) {
+  const std::vector<std::string> parts = trees(jobs);
+  std::string text =
+      fmt::format("# Makes the files of {0} with make -f, also with -j.\nTCHAT = tchat\nFOLDER = {0}\n\n", folder);
+  std::string branches, numbered, pictures;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    branches += fmt::format(" $(TREE{})", i + 1);
+    numbered += fmt::format("TREE{} ={}\n", i + 1, parts[i]);
+  }
+  text +=
+      fmt::format("# What has no file in common. Part PART of PARTS: make -f ... part PART=2 PARTS=8\n{}\n", numbered);
+  for (const CommandJob& job : last) pictures += " " + job.outputs.front();
+  text += fmt::format("all: branches{}\n\nbranches:{}\n\n", pictures, branches);
+  text += fmt::format("PART = 1\nPARTS = 1\npart: $(foreach tree,$(shell seq $(PART) $(PARTS) {}),$(TREE$(tree)))\n\n",
+                      parts.size());
+  text += ".PHONY: all branches part\n\n$(FOLDER):\n\tmkdir -p $@\n\n";
+  for (const CommandJob& job : jobs) text += rule(job);
+  for (const CommandJob& job : last) text += rule(job);
+  return text;
 }
 
 }  // namespace tchat

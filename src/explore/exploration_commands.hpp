@@ -1,18 +1,96 @@
-/// The commands of an exploration, as jobs: what they have in common, and which one follows what.
-///
-/// All files are in one folder; every command is one that a user could have typed beside it.
+/// An exploration as jobs: its request, its commands, their execution on several processors, and its Makefile.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "explore/command_job.hpp"
-#include "explore/explore_request.hpp"
-#include "explore/swept_range.hpp"
 #include "model/hybrid_system.hpp"
 
 namespace tchat {
+
+// One `tchat explore`: what the command line says, before any file is read.
+
+struct ExploreRequest {
+  std::string name;
+  std::optional<std::string> constants;  ///< -c
+  std::optional<std::string> problem;    ///< -p
+  std::optional<std::string> output;     ///< -o: the folder O of all files
+  std::string over;                      ///< "P=a:b" or "P=a:b:COUNT"
+  std::optional<std::string> second;     ///< --and "Q=c:d": the curves of special points in two parameters
+  std::vector<std::string> states;       ///< --state of the sweep
+  std::vector<std::string> overrides;    ///< KEY=VALUE: parameters for all commands, constants for runs
+  std::string quantity;                  ///< -y of the picture; empty: chosen
+  int workers = 1;
+  int starts = 2;     ///< further initial states at every value
+  int doublings = 4;  ///< of the period, from an attractor on
+  int segments = 32;  ///< most of them in a signature that is followed
+  int branches = 50;  ///< at most so many are kept
+  /// At grazing, orbits with one impact in up to so many returns are followed: 1, and 4 from points with xi_n = 0 of
+  /// grazing curves, where nothing else is asked for.
+  std::optional<int> returns;
+  double seconds = 0.0;  ///< wall time after which no command is begun; 0: any
+  bool tori = false;     ///< are followed where they are born
+  bool quiet = false;
+};
+
+// A parameter and the values that it takes, as the command line has them.
+
+/// "alpha=2.9:3.3:201" in its parts.
+struct SweptRange {
+  std::string parameter;
+  double from = 0.0, to = 0.0;
+  int count = 201;
+};
+
+/// `option` is named in messages. Throws UserError, for a number of values too where there is to be none.
+SweptRange read_swept_range(const std::string& option, const std::string& text, bool may_have_count = true);
+
+/// The number in PAR of the parameter, which the command line gives by its name or number, also as PAR(name); `range`
+/// then has the name, where it is one. Throws UserError where there is none.
+int find_parameter(const std::string& option, const HybridSystem& system, SweptRange& range);
+
+// Work as commands for the shell, and doing it on several processors. What is done leaves a stamp, and is not done
+// again by a later run with the same commands.
+
+/// Commands one after the other, which make the files of one name in a folder.
+struct CommandJob {
+  std::string name;                  ///< of its stamp and its log in the folder
+  std::vector<std::string> lines;    ///< as a user would type them
+  std::vector<std::string> inputs;   ///< files that other jobs make
+  std::vector<std::string> outputs;  ///< files that it makes
+};
+
+struct JobResult {
+  bool was_run = false;  ///< false: not begun, for the time was over or a signal has come
+  bool succeeded = false;
+  std::string log;  ///< what the commands wrote
+};
+
+class JobRunner {
+ public:
+  /// At most `workers` jobs at a time, their stamps and logs in `folder`. No job is begun once `is_over` says so.
+  JobRunner(std::string folder, int workers, std::function<bool()> is_over)
+      : folder_(std::move(folder)), workers_(workers), is_over_(std::move(is_over)) {}
+
+  /// The results in the order of the jobs, whichever is ready first. Throws ComputationError where no process can be
+  /// made.
+  std::vector<JobResult> run(const std::vector<CommandJob>& jobs);
+
+ private:
+  struct Process;
+  void begin_line(const CommandJob& job, Process& process) const;
+  std::string path(const CommandJob& job, const char* ending) const { return folder_ + "/." + job.name + ending; }
+
+  std::string folder_;
+  int workers_;
+  std::function<bool()> is_over_;
+};
+
+// The commands of an exploration, as jobs: what they have in common, and which one follows what.
+//
+// All files are in one folder; every command is one that a user could have typed beside it.
 
 /// A labelled point of a branch that is there.
 struct SwitchPoint {
@@ -95,5 +173,13 @@ class ExplorationCommands {
 std::string shell_words(const std::vector<std::string>& words);
 /// Does a word of the command line set a parameter?
 bool sets_parameter(const std::string& word);
+
+// The Makefile that makes the files of an exploration by plain commands.
+
+/// `jobs` come after those that make their inputs, and before `last` ones. Target `branches` makes the files of `jobs`,
+/// `all` those of both, `part` a part of PARTS of the branches, number PART from 1: no file belongs to two parts, so
+/// that parts can be made at the same time by processes that know nothing of each other.
+std::string exploration_makefile(const std::vector<CommandJob>& jobs, const std::vector<CommandJob>& last,
+                                 const std::string& folder);
 
 }  // namespace tchat

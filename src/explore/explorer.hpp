@@ -9,7 +9,7 @@
 #include <functional>
 #include <ostream>
 
-#include "explore/explore_request.hpp"
+#include "explore/exploration_commands.hpp"
 #include "explore/explored_diagram.hpp"
 
 namespace tchat {

@@ -1,9 +1,4 @@
-/// The orbits of the branches that are there, by numbers that do not depend on where an orbit begins nor on how often
-/// it is run round: its period, and mean and largest value of each state in time.
-///
-/// An orbit is like one of a branch that has the same numbers at the same parameter, up to the error of interpolation
-/// between its points (cubic, compared with quadratic). Two different orbits may share these numbers: whether they are
-/// the same is decided by their states (explore/branch_recognition.hpp).
+/// The orbits of known branches, interpolated between points, and whether two labelled solutions are the same orbit.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,8 +7,16 @@
 #include <vector>
 
 #include "files/point_file_reader.hpp"
+#include "files/solution_file.hpp"
 
 namespace tchat {
+
+// The orbits of the branches that are there, by numbers that do not depend on where an orbit begins nor on how often
+// it is run round: its period, and mean and largest value of each state in time.
+//
+// An orbit is like one of a branch that has the same numbers at the same parameter, up to the error of interpolation
+// between its points (cubic, compared with quadratic). Two different orbits may share these numbers: whether they are
+// the same is decided by their states (explore/branch_recognition.hpp).
 
 using SignatureWord = std::vector<std::array<int, 3>>;
 
@@ -77,5 +80,36 @@ class OrbitCatalogue {
 
   std::vector<CataloguedSection> sections_;
 };
+
+// The points of a branch or curve between those that were computed.
+
+struct InterpolatedPoint {
+  Eigen::VectorXd numbers;
+  Eigen::VectorXd uncertainty;  ///< of each: cubic compared with quadratic interpolation
+};
+
+/// The numbers of the point between points i and i + 1 whose coordinate is `at`. `coordinate` has that of each point,
+/// and differs between these two; `numbers` has a column for each point.
+InterpolatedPoint interpolate(const std::vector<double>& coordinate, const Eigen::MatrixXd& numbers, Eigen::Index i,
+                              double at);
+
+/// Are these the numbers of the point, up to its uncertainty and the errors of runs?
+bool agrees(const InterpolatedPoint& point, const Eigen::VectorXd& numbers);
+
+// Are two labelled solutions at one parameter value the same orbit?
+//
+// Orbits cut by events are compared by their states where segments end, before the jumps: the same when these agree
+// for some rotation of the signature, compared until both orbits are back at their start. A smooth orbit has no such
+// states; points of one are compared with the nearest ones on the curve of the other. An equilibrium has one state.
+
+struct ComparedOrbit {
+  const LabelledSolution* solution = nullptr;
+  SignatureWord signature;  ///< with its repetitions
+};
+
+/// Largest difference of two orbits of one primitive signature, as a share of the size of each state (its largest
+/// modulus on `a`, at least 1e-3 of that of all). States from 0 that are in `drifting`, which nothing depends on, are
+/// left out. Infinite where they cannot be compared: tori, other signatures, other numbers of states.
+double orbit_distance(const ComparedOrbit& a, const ComparedOrbit& b, const std::vector<Eigen::Index>& drifting);
 
 }  // namespace tchat

@@ -1,5 +1,5 @@
 // Labelled solutions that are one orbit, and others that nearly are.
-#include "explore/orbit_identity.hpp"
+#include "explore/orbit_catalogue.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
