@@ -18,7 +18,7 @@
 #include "model/identity_jump.hpp"
 #include "motion/hybrid_simulation.hpp"
 #include "plugin/problem_setup.hpp"
-#include "resegment/empty_segments.hpp"
+#include "resegment/signature_match.hpp"
 #include "run/torus_start.hpp"
 #include "settings/constants_file.hpp"
 #include "settings/problem_type.hpp"

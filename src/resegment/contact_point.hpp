@@ -1,7 +1,9 @@
-/// Where a labelled orbit is in grazing contact with an event surface, as its label says.
+/// Where a labelled orbit is in grazing contact: at one place, at several at once, and without a section.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "files/solution_file.hpp"
 #include "model/hybrid_system.hpp"
@@ -9,6 +11,8 @@
 #include "settings/run_settings.hpp"
 
 namespace tchat {
+
+// Where a labelled orbit is in grazing contact with an event surface, as its label says.
 
 struct ContactPoint {
   enum Where {
@@ -32,5 +36,32 @@ ContactPoint contact_point(const LabelledSolution& solution, const Orbit& x, con
 /// has none or it leaves a choice.
 int jump_at_contact(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
                     const ContactPoint& contact);
+
+/// `own`, which the label names, and every further contact of a monitored event function (GCHGRZIND) inside a segment
+/// or on a Poincare section; where `own` is an impact of velocity zero, further ones of these. In their order along the
+/// orbit; the label's tolerance decides what is a contact.
+std::vector<ContactPoint> simultaneous_contacts(const ContactPoint& own, const Orbit& x, const HybridSystem& system,
+                                                const RunSettings& settings);
+
+/// An event function other than `event` that falls through zero where segment s (from 0) ends: a Poincare section on
+/// which an orbit can be cut there whether it touches or not. Nothing when the problem has none.
+std::optional<int> section_at_end(const Orbit& x, const HybridSystem& system, int s, int field, int event);
+
+// Orbits without a section: one segment with event function 0, whose start a phase condition fixes (IPS = 180 from a
+// Hopf bifurcation). At a grazing label the surface in contact becomes the section, and the orbit starts there.
+
+bool has_section(const RunSettings& settings);
+
+/// The orbit of a grazing label cut at its contact: one segment from the contact to itself, with the event function in
+/// contact and the identity in place of a jump. Changes the signature of `settings` likewise. The solution has no
+/// direction, and its kinds are those of the label with their places on the new segment. `source` names label and file.
+/// Throws UserError when the label is no grazing point.
+LabelledSolution cut_at_contact(const LabelledSolution& solution, RunSettings& settings, const HybridSystem& system,
+                                const std::string& source);
+
+/// Throws UserError, which says how to compute the orbit with a section, when the orbit has none. `what` cannot be done
+/// to it; `problem` is what `tchat run` takes, `path` the q-file.
+void require_section(const LabelledSolution& solution, const RunSettings& settings, const HybridSystem& system,
+                     const std::string& what, const std::string& problem, const std::string& path);
 
 }  // namespace tchat

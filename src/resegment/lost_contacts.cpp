@@ -12,7 +12,6 @@
 #include "model/identity_jump.hpp"
 #include "orbit/orbit.hpp"
 #include "resegment/contact_point.hpp"
-#include "resegment/simultaneous_contacts.hpp"
 
 namespace tchat {
 

@@ -1,17 +1,21 @@
-/// What becomes of a labelled orbit: its segments cut, joined, rotated or repeated, with their new index vectors.
+/// What becomes of a labelled orbit whose signature changes, and contacts that are born at a tangency.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "files/solution_file.hpp"
-#include "resegment/branch_side.hpp"
-#include "resegment/new_settings.hpp"
+#include "model/hybrid_system.hpp"
+#include "orbit/orbit.hpp"
+#include "resegment/orbit_pieces.hpp"
 #include "resegment/resegment.hpp"
+#include "resegment/segment_list.hpp"
 #include "run/orbit_start.hpp"
 #include "settings/point_type.hpp"
 
 namespace tchat {
+
+// What becomes of a labelled orbit: its segments cut, joined, rotated or repeated, with their new index vectors.
 
 /// The labelled orbit with the constants of its run.
 struct LabelledOrbit {
@@ -37,5 +41,20 @@ struct NewOrbit {
 
 /// Throws UserError when label, signature, jump and problem do not go together.
 NewOrbit new_orbit(const ResegmentRequest& request, const LabelledOrbit& source, const HybridSystem& system);
+
+// Contacts with a surface behind which another field holds, born at a tangency: which field that is, and whether its
+// flow comes back.
+
+/// The index vector that --contact gives. Throws UserError when it is none of the problem.
+IndexVector given_contact(const std::string& text, const HybridSystem& system);
+
+/// Throws UserError when contact k of the cut changes nothing: the state goes on with the field of before. Something
+/// about it is not known then.
+void require_change(const CutList& cut, std::size_t k, const LabelledOrbit& source, const HybridSystem& system);
+
+/// Does a contact segment of no duration (model/contact_segment.hpp) follow contact k of the cut? Throws UserError
+/// when no orbit with a short contact exists there: the field beyond the surface leads away from it, or back at once
+/// (sliding).
+bool is_contact_born(const CutList& cut, std::size_t k, const LabelledOrbit& source, const HybridSystem& system);
 
 }  // namespace tchat

@@ -1,5 +1,4 @@
-/// `tchat resegment`: from a labelled orbit to starting data and constants of the next run, where the signature changes
-/// (5.1.1, 5.3; src/docs/resegment.md).
+/// The command `tchat resegment`: from a labelled orbit or torus to data and constants of the next run.
 #pragma once
 
 #include <optional>
@@ -7,7 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "files/solution_file.hpp"
+#include "model/hybrid_system.hpp"
+#include "settings/run_settings.hpp"
+
 namespace tchat {
+
+// `tchat resegment`: from a labelled orbit to starting data and constants of the next run, where the signature changes
+// (5.1.1, 5.3; src/docs/resegment.md).
 
 enum class ResegmentKind {
   grazing_curve,  ///< the segment ends in grazing contact, IPS 150
@@ -37,5 +43,17 @@ struct ResegmentRequest {
 /// plugin of another folder is loaded. Throws UserError when label, signature, constants and problem do not go
 /// together.
 std::vector<std::string> resegment(const ResegmentRequest& request, std::ostream& screen, std::ostream& notices);
+
+// From a torus that touches a surface (GR on a run of type 182) to the curve of such tori in two parameters (type
+// 152): the orbits stay what they are, the constants ask for the contact and free one parameter more.
+
+/// The constants of the run of type 152. `icp_is_given`: the command line names its parameters; else the first
+/// parameter of the problem that is not free yet becomes free. Throws UserError, `name` in front, where the label is no
+/// contact of a torus, or all parameters are free already.
+RunSettings grazing_torus_settings(const RunSettings& settings, const LabelledSolution& solution,
+                                   const std::string& name, const HybridSystem& system, bool icp_is_given);
+
+/// The label as the start of that run: without its direction, which is that of another problem.
+LabelledSolution grazing_torus_start(LabelledSolution solution);
 
 }  // namespace tchat

@@ -4,8 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "base/user_error.hpp"
-#include "resegment/empty_segments.hpp"
-#include "resegment/new_settings.hpp"
+#include "resegment/signature_match.hpp"
 #include "settings/constants_file.hpp"
 #include "support/mems_oscillator.hpp"
 
