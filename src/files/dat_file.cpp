@@ -9,7 +9,7 @@
 #include "base/text_file.hpp"
 #include "base/user_error.hpp"
 #include "base/words.hpp"
-#include "model/parameter_layout.hpp"
+#include "model/parameter_vector.hpp"
 #include "plugin/problem_setup.hpp"
 #include "settings/constant_value.hpp"
 #include "settings/settings_type.hpp"

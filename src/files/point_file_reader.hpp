@@ -18,7 +18,7 @@
 #include <string_view>
 #include <vector>
 
-#include "model/parameter_layout.hpp"
+#include "model/parameter_vector.hpp"
 
 namespace tchat {
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "model/parameter_layout.hpp"
+#include "model/parameter_vector.hpp"
 #include "settings/point_type.hpp"
 #include "settings/problem_type.hpp"
 

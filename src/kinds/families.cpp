@@ -11,7 +11,7 @@
 #include "continuation/orbit_trend.hpp"
 #include "files/orbit_trace.hpp"
 #include "kinds/orbit_check.hpp"
-#include "model/identity_jump.hpp"
+#include "model/events.hpp"
 #include "orbit/ring_system.hpp"
 #include "settings/run_settings.hpp"
 #include "stability/bifurcation_tests.hpp"

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "linear/dense_matrix.hpp"
-#include "model/event_at.hpp"
+#include "model/events.hpp"
 #include "resegment/contact_point.hpp"
 #include "settings/settings_type.hpp"
 

@@ -7,7 +7,7 @@
 #include "kinds/curve_starts.hpp"
 #include "kinds/families.hpp"
 #include "kinds/orbit_check.hpp"
-#include "model/identity_jump.hpp"
+#include "model/events.hpp"
 #include "orbit/curve_conditions.hpp"
 #include "orbit/periodic_orbit_system.hpp"
 #include "run/branch_setup.hpp"

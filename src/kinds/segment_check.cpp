@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "model/event_at.hpp"
+#include "model/events.hpp"
 #include "motion/cvodes_flow.hpp"
 
 namespace tchat {

@@ -16,7 +16,7 @@
 #include "files/diagnostics_file.hpp"
 #include "files/run_files.hpp"
 #include "files/solution_file_reader.hpp"
-#include "model/event_at.hpp"
+#include "model/events.hpp"
 #include "orbit/admissibility.hpp"
 #include "orbit/collocation_rule.hpp"
 #include "orbit/torus_system.hpp"

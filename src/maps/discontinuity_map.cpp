@@ -11,7 +11,7 @@
 
 #include "base/user_error.hpp"
 #include "linear/dense_matrix.hpp"
-#include "model/event_at.hpp"
+#include "model/events.hpp"
 
 namespace tchat {
 

@@ -8,7 +8,7 @@
 
 #include "base/user_error.hpp"
 #include "linear/dense_matrix.hpp"
-#include "model/event_at.hpp"
+#include "model/events.hpp"
 #include "motion/orbit_flow.hpp"
 #include "orbit/ring_system.hpp"
 

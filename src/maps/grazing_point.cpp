@@ -9,8 +9,7 @@
 
 #include "base/user_error.hpp"
 #include "linear/dense_matrix.hpp"
-#include "model/event_at.hpp"
-#include "model/mode_dimensions.hpp"
+#include "model/events.hpp"
 
 namespace tchat {
 

@@ -14,7 +14,7 @@
 #include "files/replaced_file.hpp"
 #include "files/run_files.hpp"
 #include "files/solution_file.hpp"
-#include "model/identity_jump.hpp"
+#include "model/events.hpp"
 #include "motion/orbit_flow.hpp"
 #include "orbit/torus_system.hpp"
 #include "plugin/problem_setup.hpp"

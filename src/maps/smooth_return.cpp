@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/user_error.hpp"
-#include "model/event_at.hpp"
+#include "model/events.hpp"
 #include "motion/cvodes_flow.hpp"
 #include "motion/hybrid_simulation.hpp"
 #include "motion/orbit_flow.hpp"

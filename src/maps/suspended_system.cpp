@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "model/difference_derivatives.hpp"
+#include "model/hybrid_system.hpp"
 #include "model/parameter_vector.hpp"
 
 namespace tchat {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "base/user_error.hpp"
-#include "model/event_at.hpp"
+#include "model/events.hpp"
 #include "motion/hybrid_simulation.hpp"
 #include "motion/orbit_flow.hpp"
 #include "run/orbit_start.hpp"

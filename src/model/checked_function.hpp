@@ -1,5 +1,4 @@
-/// One function of a hybrid system as `tchat check` sees it: a function of (x, PAR(1..q)) with a name for every entry,
-/// and the comparison of a matrix of its derivatives with extrapolated differences.
+/// The functions of a problem as `tchat check` compares them with extrapolated differences.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,6 +9,9 @@
 #include "model/hybrid_system.hpp"
 
 namespace tchat {
+
+// One function of a hybrid system as `tchat check` sees it: a function of (x, PAR(1..q)) with a name for every entry,
+// and the comparison of a matrix of its derivatives with extrapolated differences.
 
 /// Where functions are compared.
 struct TestPoint {
@@ -76,5 +78,17 @@ struct MatrixComparison {
 MatrixComparison compare_with_differences(const CheckedFunction& function, const TestPoint& at,
                                           const Eigen::MatrixXd& supplied,
                                           const std::function<Eigen::VectorXd(const TestPoint&)>& value);
+
+// Derivatives of a function of one variable by central differences with Richardson extrapolation, and how far to
+// trust them (Ridders' method). Slow and careful: for checking derivatives, not for using them.
+
+struct ExtrapolatedDifference {
+  Eigen::VectorXd value;  ///< phi'(0); NaN where phi could not be evaluated at any step size
+  Eigen::VectorXd error;  ///< estimate of its error, entry by entry; infinite where value is NaN
+};
+
+/// phi'(0) from phi(+-h) with h = step, step / 2, ..., step / 2^9. Entries of phi that are not finite at some step
+/// sizes use the others.
+ExtrapolatedDifference extrapolated_difference(const std::function<Eigen::VectorXd(double)>& phi, double step);
 
 }  // namespace tchat

@@ -1,15 +1,4 @@
-/// Compares everything a problem supplies with finite differences, entry by entry, and looks for the usual mistakes.
-///
-/// For every field, event function, jump and integrand, at given states and at random ones near them:
-///   - outputs left unset (NaN at every state), outputs written beyond the end, results that change from call to call,
-///     parameters read beyond the declared ones;
-///   - F_x, F_p against extrapolated differences of F;
-///   - D = F_x v + F_p w against the first derivatives, and D_x, D_p against extrapolated differences of D, along every
-///     state and parameter (along a few random directions when there are many).
-///   - derivatives that are not finite where the value is: a fault at a given state, a note at special ones (the
-///     problem's start, zero, and those with one state 0, 1 or -1).
-/// An entry is at fault when it differs by more than the differences' own error estimate (times 20) and 1e-8 of the
-/// function's scale.
+/// Comparison of the functions that a problem supplies with finite differences, boundary conditions included.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,10 +6,38 @@
 #include <string>
 #include <vector>
 
-#include "model/boundary_check.hpp"
 #include "model/hybrid_system.hpp"
 
 namespace tchat {
+
+// Compares the derivatives of a problem's boundary conditions with differences, at random ends of segments.
+
+struct BoundaryCheck {
+  int segments = 1;
+  int conditions = 0;
+  double error = 0.0;  ///< worst |supplied - difference| / scale
+  std::vector<std::string>
+      faults;  ///< the first few entries that differ by more than 1e-6 of the scale, or are not finite
+};
+
+/// `par`: PAR without durations, which are random.
+BoundaryCheck check_boundary(const HybridSystem& system, int segments, const Eigen::VectorXd& par, unsigned seed);
+
+/// A line of the report of `tchat check`.
+std::string to_text(const BoundaryCheck& check);
+
+// Compares everything a problem supplies with finite differences, entry by entry, and looks for the usual mistakes.
+//
+// For every field, event function, jump and integrand, at given states and at random ones near them:
+//   - outputs left unset (NaN at every state), outputs written beyond the end, results that change from call to call,
+//     parameters read beyond the declared ones;
+//   - F_x, F_p against extrapolated differences of F;
+//   - D = F_x v + F_p w against the first derivatives, and D_x, D_p against extrapolated differences of D, along every
+//     state and parameter (along a few random directions when there are many).
+//   - derivatives that are not finite where the value is: a fault at a given state, a note at special ones (the
+//     problem's start, zero, and those with one state 0, 1 or -1).
+// An entry is at fault when it differs by more than the differences' own error estimate (times 20) and 1e-8 of the
+// function's scale.
 
 struct DerivativeCheckOptions {
   std::vector<Eigen::VectorXd> states;  ///< n each; none: the random ones are near zero

@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
-
-#include "model/difference_derivatives.hpp"
 
 namespace tchat {
 
@@ -234,6 +233,290 @@ bool all_finite(const double* values, int count) {
   double sum = 0.0;
   for (int i = 0; i < count; ++i) sum += values[i] - values[i];
   return sum == 0.0;
+}
+
+namespace {
+
+/// Numbers on the stack, as long as they are not too many.
+class Column {
+ public:
+  /// Not set.
+  explicit Column(int size) : size_(static_cast<std::size_t>(size)) {
+    if (size_ > few_.size()) many_.resize(size_);
+    begin_ = size_ > few_.size() ? many_.data() : few_.data();
+  }
+  Column(const Column& other) : Column(static_cast<int>(other.size_)) { std::copy_n(other.begin_, size_, begin_); }
+  Column& operator=(const Column&) = delete;
+  ~Column() = default;
+
+  double* data() { return begin_; }
+  const double* data() const { return begin_; }
+  double& operator[](std::size_t k) { return begin_[k]; }
+  std::size_t size() const { return size_; }
+  void set_zero() { std::fill_n(begin_, size_, 0.0); }
+
+ private:
+  std::array<double, 1000> few_;
+  std::vector<double> many_;
+  std::size_t size_;
+  double* begin_;
+};
+
+constexpr double first_step = 2e-3;  // truncation (h^6) and rounding (1/h) are then of a size
+constexpr double reduction = 1.0 / 16.0;
+constexpr int step_sizes = 4;
+
+/// Relative errors of a function's values, generously: one that is computed, one that is a difference itself.
+constexpr double computed = 1e3 * std::numeric_limits<double>::epsilon();
+constexpr double differenced = 1e-8;
+
+/// A copy of the point that differences may move.
+struct MovablePoint {
+  Column x;
+  Column par;
+
+  MovablePoint(const HybridSystem& system, const double* x0, const double* par0)
+      : x(system.dimension()), par(system.layout().room()) {
+    std::copy_n(x0, x.size(), x.data());
+    std::copy_n(par0, par.size(), par.data());
+  }
+  double& variable(int c, int n, std::span<const int> active) {
+    // No function depends on what is beyond, nor on the last entry.
+    if (c < n) return x[static_cast<std::size_t>(c)];
+    return par[std::min(static_cast<std::size_t>(active[static_cast<std::size_t>(c - n)]), par.size()) - 1];
+  }
+};
+
+/// phi'(0) of sixth order from phi(+-h), phi(+-2h), phi(+-3h). True when the fourth-order value agrees.
+template <class Function>
+bool difference_with_step(const Function& phi, double error, double h, int rows, double* derivative) {
+  std::array<Column, 3> odd{Column(rows), Column(rows), Column(rows)};  // phi(kh) - phi(-kh)
+  Column size(rows);
+  size.set_zero();
+  Column value(rows);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double t = h * static_cast<double>(k + 1);
+    phi(t, odd[k].data());
+    phi(-t, value.data());
+    for (std::size_t i = 0; i < static_cast<std::size_t>(rows); ++i) {
+      size[i] = std::max(size[i], std::abs(value[i]));
+      odd[k][i] -= value[i];
+    }
+  }
+  bool agrees = true;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(rows); ++i) {
+    const double sixth = (45.0 * odd[0][i] - 9.0 * odd[1][i] + odd[2][i]) / (60.0 * h);
+    const double fourth = (8.0 * odd[0][i] - odd[1][i]) / (12.0 * h);
+    derivative[i] = sixth;
+    agrees = agrees && std::abs(sixth - fourth) <= 1e-7 * std::abs(sixth) + error * size[i] / h;
+  }
+  return agrees;
+}
+
+/// phi'(0), phi(t, out) writing `rows` numbers with relative error `error` and varying on the scale `unit` of t.
+template <class Function>
+void difference(const Function& phi, double error, double unit, int rows, double* derivative) {
+  double h = first_step * unit;
+  for (int k = 0; k < step_sizes; ++k, h *= reduction)
+    if (difference_with_step(phi, error, h, rows, derivative)) return;
+}
+
+/// F(point, out) itself.
+class Value {
+ public:
+  static constexpr double error = computed;
+  Value(const HybridSystem& system, FunctionKind kind, int index) : system_(system), kind_(kind), index_(index) {}
+  void operator()(const MovablePoint& at, double* f) const {
+    system_.value(kind_, index_, at.x.data(), at.par.data(), f);
+  }
+
+ private:
+  const HybridSystem& system_;
+  FunctionKind kind_;
+  int index_;
+};
+
+/// Derivative of F(point, out) by one variable of the point.
+template <class Function>
+void difference_column(const Function& function, MovablePoint& point, double& variable, int rows, double* column) {
+  const double at = variable;
+  const auto moved = [&](double t, double* out) {
+    variable = at + t;
+    function(point, out);
+  };
+  difference(moved, Function::error, 1.0 + std::abs(at), rows, column);
+  variable = at;
+}
+
+template <class Function>
+void difference_columns(const Function& function, const HybridSystem& system, int rows, const double* x,
+                        const double* par, std::span<const int> active, double* dx, double* dp) {
+  const int n = system.dimension();
+  MovablePoint point(system, x, par);
+  for (int c = 0; c < n + static_cast<int>(active.size()); ++c)
+    difference_column(function, point, point.variable(c, n, active), rows, c < n ? dx + c * rows : dp + (c - n) * rows);
+}
+
+/// D = F_x v + F_p w from the table's first derivatives.
+class SuppliedDirectional {
+ public:
+  static constexpr double error = computed;
+  SuppliedDirectional(const HybridSystem& system, FunctionKind kind, int index, int rows, std::span<const int> active,
+                      const double* direction)
+      : system_(system),
+        kind_(kind),
+        index_(index),
+        rows_(static_cast<std::size_t>(rows)),
+        active_(active),
+        direction_(direction),
+        f_(rows_),
+        first_(rows_ * (static_cast<std::size_t>(system.dimension()) + active.size())) {}
+
+  void operator()(const MovablePoint& at, double* d) const {
+    const auto n = static_cast<std::size_t>(system_.dimension());
+    system_.first(kind_, index_, at.x.data(), at.par.data(), active_, f_.data(), first_.data(),
+                  first_.data() + rows_ * n);
+    std::fill(d, d + rows_, 0.0);
+    for (std::size_t c = 0; c < n + active_.size(); ++c)
+      for (std::size_t i = 0; i < rows_; ++i) d[i] += first_[c * rows_ + i] * direction_[c];
+  }
+
+ private:
+  const HybridSystem& system_;
+  FunctionKind kind_;
+  int index_;
+  std::size_t rows_;
+  std::span<const int> active_;
+  const double* direction_;
+  mutable std::vector<double> f_, first_;
+};
+
+/// D as a difference of values along the direction.
+class DifferencedDirectional {
+ public:
+  static constexpr double error = differenced;
+  DifferencedDirectional(const HybridSystem& system, FunctionKind kind, int index, int rows,
+                         std::span<const int> active, const double* direction)
+      : system_(system), kind_(kind), index_(index), rows_(rows), active_(active), direction_(direction) {}
+
+  void operator()(const MovablePoint& at, double* d) const {
+    const int n = system_.dimension();
+    const int variables = n + static_cast<int>(active_.size());
+    MovablePoint from = at;
+    double unit = INFINITY;  // no variable moves by more than its own scale
+    for (int c = 0; c < variables; ++c)
+      if (direction_[c] != 0.0)
+        unit = std::min(unit, (1.0 + std::abs(from.variable(c, n, active_))) / std::abs(direction_[c]));
+    if (!std::isfinite(unit)) {
+      std::fill(d, d + rows_, 0.0);
+      return;
+    }
+    MovablePoint point = at;
+    const auto along = [&](double t, double* out) {
+      for (int c = 0; c < variables; ++c)
+        point.variable(c, n, active_) = from.variable(c, n, active_) + t * direction_[c];
+      system_.value(kind_, index_, point.x.data(), point.par.data(), out);
+    };
+    difference(along, computed, unit, rows_, d);
+  }
+
+ private:
+  const HybridSystem& system_;
+  FunctionKind kind_;
+  int index_;
+  int rows_;
+  std::span<const int> active_;
+  const double* direction_;
+};
+
+}  // namespace
+
+void difference_first(const HybridSystem& system, FunctionKind kind, int index, const double* x, const double* par,
+                      std::span<const int> active, double* out, double* dx, double* dp) {
+  difference_columns(Value(system, kind, index), system, system.rows(kind), x, par, active, dx, dp);
+  system.value(kind, index, x, par, out);
+}
+
+void difference_by_parameter(const HybridSystem& system, FunctionKind kind, int index, const double* x,
+                             const double* par, int k, double* column) {
+  MovablePoint point(system, x, par);
+  double& variable = point.variable(system.dimension(), system.dimension(), std::span(&k, 1));
+  difference_column(Value(system, kind, index), point, variable, system.rows(kind), column);
+}
+
+void difference_second(const HybridSystem& system, FunctionKind kind, int index, const double* x, const double* par,
+                       std::span<const int> active, const double* direction, double* out, double* dx, double* dp) {
+  const int rows = system.rows(kind);
+  const MovablePoint here(system, x, par);
+  const auto differentiate = [&](const auto& directional) {
+    directional(here, out);
+    difference_columns(directional, system, rows, x, par, active, dx, dp);
+  };
+  if (system.table().derivative_order >= 1)
+    differentiate(SuppliedDirectional(system, kind, index, rows, active, direction));
+  else
+    differentiate(DifferencedDirectional(system, kind, index, rows, active, direction));
+}
+
+void difference_third(const HybridSystem& system, FunctionKind kind, int index, const double* x, const double* par,
+                      double* out) {
+  const Eigen::Index n = system.dimension();
+  const Eigen::Index r = system.rows(kind);
+  const Eigen::Map<const Eigen::MatrixXd> at(x, n, 8);
+  Eigen::Map<Eigen::MatrixXd> of(out, r, 8);
+  Eigen::VectorXd value(r), along(r);
+  Eigen::MatrixXd fx(r, n), matrix(r, n);
+  system.first(kind, index, x, par, {}, value.data(), fx.data(), nullptr);
+  const auto second = [&](const Eigen::VectorXd& state, int m) -> const Eigen::MatrixXd& {
+    system.second(kind, index, state.data(), par, {}, at.col(m).data(), along.data(), matrix.data(), nullptr);
+    return matrix;
+  };
+  of.col(0) = value;
+  of.rightCols(7).noalias() = fx * at.rightCols(7);
+  const Eigen::VectorXd state = at.col(0);
+  const Eigen::MatrixXd by_first = second(state, 1);
+  const Eigen::MatrixXd by_second = second(state, 2);
+  of.col(3) += by_first * at.col(2);
+  of.col(5) += by_first * at.col(4);
+  of.col(6) += by_second * at.col(4);
+  of.col(7) += by_first * at.col(6) + by_second * at.col(5) + second(state, 4) * at.col(3);
+  const double size = at.col(4).norm();
+  if (size == 0.0 || at.col(1).isZero(0.0) || at.col(2).isZero(0.0)) return;
+  const double step = 1e-3 * (1.0 + state.norm()) / size;
+  const auto difference = [&](double h) {
+    const Eigen::VectorXd ahead = second(state + h * at.col(4), 1) * at.col(2);
+    return Eigen::VectorXd((ahead - second(state - h * at.col(4), 1) * at.col(2)) / (2.0 * h));
+  };
+  of.col(7) += (4.0 * difference(0.5 * step) - difference(step)) / 3.0;
+}
+
+void difference_boundary(const HybridSystem& system, const OrbitEnds& at, std::span<const int> active, double* out,
+                         double* dstarts, double* dends, double* dp) {
+  const int rows = system.boundary_conditions();
+  const auto count = static_cast<std::size_t>(system.dimension()) * static_cast<std::size_t>(at.segments);
+  std::vector<double> starts(at.starts, at.starts + count);
+  std::vector<double> ends(at.ends, at.ends + count);
+  std::vector<double> par(at.par, at.par + system.layout().room(at.segments));
+  const OrbitEnds near{at.segments, starts.data(), ends.data(), par.data()};
+  const auto column = [&](double& variable, double* derivative) {
+    const double here = variable;
+    const auto moved = [&](double t, double* values) {
+      variable = here + t;
+      system.boundary(near, values);
+    };
+    difference(moved, computed, 1.0 + std::abs(here), rows, derivative);
+    variable = here;
+  };
+  for (std::size_t c = 0; c < count; ++c) {
+    const std::size_t place = c * static_cast<std::size_t>(rows);
+    column(starts[c], dstarts + place);
+    column(ends[c], dends + place);
+  }
+  for (const int k : active) {
+    column(par[static_cast<std::size_t>(k - 1)], dp);
+    dp += rows;
+  }
+  system.boundary(at, out);
 }
 
 }  // namespace tchat

@@ -1,10 +1,5 @@
-/// A hybrid dynamical system as the rest of tchat sees it: fields f_i, event functions h_j and jumps g_k with their
-/// derivatives, over a problem table (plugin, or a class compiled into a test); and, for boundary value problems, the
-/// boundary conditions and integrands that the problem has of its own.
-///
-/// Indices count from 1. x has `dimension()` entries, par is a ParameterVector's data (layout().room() entries).
-/// Matrices are column-major. Evaluation never allocates and never throws; a function that cannot be evaluated gives
-/// entries that are not finite, which callers check (`all_finite`).
+/// A hybrid dynamical system as the rest of tchat uses it, and central differences for derivatives that its table
+/// lacks.
 #pragma once
 
 #include <algorithm>
@@ -14,10 +9,18 @@
 #include <vector>
 
 #include "model/index_vector.hpp"
-#include "model/parameter_layout.hpp"
+#include "model/parameter_vector.hpp"
 #include "tchat/problem.h"
 
 namespace tchat {
+
+// A hybrid dynamical system as the rest of tchat sees it: fields f_i, event functions h_j and jumps g_k with their
+// derivatives, over a problem table (plugin, or a class compiled into a test); and, for boundary value problems, the
+// boundary conditions and integrands that the problem has of its own.
+//
+// Indices count from 1. x has `dimension()` entries, par is a ParameterVector's data (layout().room() entries).
+// Matrices are column-major. Evaluation never allocates and never throws; a function that cannot be evaluated gives
+// entries that are not finite, which callers check (`all_finite`).
 
 enum class FunctionKind { field = TCHAT_FIELD, event = TCHAT_EVENT, jump = TCHAT_JUMP, integrand = TCHAT_INTEGRAND };
 
@@ -144,5 +147,32 @@ int least_dimension(const HybridSystem& system, const Signature& signature);
 
 /// True when no entry is NaN or infinite.
 bool all_finite(const double* values, int count);
+
+// Central differences for problem tables that supply fewer derivatives than are needed (GCIDIFF 0 or 1).
+//
+// Same shapes as HybridSystem::first and ::second. A derivative by one variable comes from six values at distances h,
+// 2h, 3h: its error is of order h^6, near rounding / h = 1e-13 where the function varies on a scale of 1. The result
+// is compared with the one of fourth order from the same values; where they disagree or are not finite, h is reduced.
+
+/// F by value, F_x and F_p by differences of F.
+void difference_first(const HybridSystem& system, FunctionKind kind, int index, const double* x, const double* par,
+                      std::span<const int> active, double* out, double* dx, double* dp);
+
+/// dF/dPAR(k) by differences of F: `rows` numbers.
+void difference_by_parameter(const HybridSystem& system, FunctionKind kind, int index, const double* x,
+                             const double* par, int k, double* column);
+
+/// D = F_x v + F_p w, its derivatives by differences of D. D comes from first derivatives where the table has them,
+/// else it is itself a difference along (v, w).
+void difference_second(const HybridSystem& system, FunctionKind kind, int index, const double* x, const double* par,
+                       std::span<const int> active, const double* direction, double* out, double* dx, double* dp);
+
+/// HybridSystem::third, the third derivatives by a difference of second ones, of fourth order.
+void difference_third(const HybridSystem& system, FunctionKind kind, int index, const double* x, const double* par,
+                      double* out);
+
+/// The derivatives of the boundary conditions, shapes as in HybridSystem::boundary_first, by differences of them.
+void difference_boundary(const HybridSystem& system, const OrbitEnds& at, std::span<const int> active, double* out,
+                         double* dstarts, double* dends, double* dp);
 
 }  // namespace tchat

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "model/event_at.hpp"
+#include "model/events.hpp"
 #include "motion/lyapunov_exponents.hpp"
 
 namespace tchat {

@@ -15,9 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "model/finite_derivatives.hpp"
+#include "model/function_values.hpp"
 #include "model/parameter_vector.hpp"
-#include "model/undefined_value.hpp"
 
 namespace tchat {
 

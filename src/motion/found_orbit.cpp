@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "linear/dense_matrix.hpp"
-#include "model/identity_jump.hpp"
+#include "model/events.hpp"
 #include "motion/cvodes_flow.hpp"
 #include "orbit/mesh_adaptation.hpp"
 

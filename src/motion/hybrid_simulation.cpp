@@ -7,10 +7,8 @@
 #include <cmath>
 
 #include "base/user_error.hpp"
-#include "model/event_at.hpp"
-#include "model/mode_dimensions.hpp"
-#include "model/relevant_events.hpp"
-#include "model/undefined_value.hpp"
+#include "model/events.hpp"
+#include "model/function_values.hpp"
 
 namespace tchat {
 

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "base/user_error.hpp"
-#include "model/event_at.hpp"
-#include "model/finite_derivatives.hpp"
+#include "model/events.hpp"
+#include "model/function_values.hpp"
 #include "motion/cvodes_flow.hpp"
 #include "motion/simulation_run.hpp"
 #include "motion/tangent_flow.hpp"

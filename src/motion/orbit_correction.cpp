@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "linear/dense_matrix.hpp"
-#include "model/event_at.hpp"
+#include "model/events.hpp"
 
 namespace tchat {
 

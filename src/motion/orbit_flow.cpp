@@ -8,8 +8,8 @@
 
 #include "base/user_error.hpp"
 #include "linear/dense_matrix.hpp"
-#include "model/event_at.hpp"
-#include "model/finite_derivatives.hpp"
+#include "model/events.hpp"
+#include "model/function_values.hpp"
 #include "model/parameter_vector.hpp"
 #include "motion/cvodes_flow.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "model/event_at.hpp"
+#include "model/events.hpp"
 
 namespace tchat {
 

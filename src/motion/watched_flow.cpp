@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "model/undefined_value.hpp"
+#include "model/function_values.hpp"
 #include "motion/cvodes_flow.hpp"
 
 namespace tchat {

@@ -6,8 +6,7 @@
 
 #include "linear/array_kernel.hpp"
 #include "linear/stack_array.hpp"
-#include "model/event_at.hpp"
-#include "model/sliding_modes.hpp"
+#include "model/events.hpp"
 
 namespace tchat {
 

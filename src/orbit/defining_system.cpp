@@ -6,8 +6,8 @@
 #include <numeric>
 #include <utility>
 
-#include "model/contact_segment.hpp"
-#include "model/undefined_value.hpp"
+#include "model/events.hpp"
+#include "model/function_values.hpp"
 
 namespace tchat {
 

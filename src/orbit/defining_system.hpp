@@ -57,7 +57,7 @@ class DefiningSystem {
   }
   /// Does an event end segment s?
   bool has_event(int s) const { return signature_[static_cast<std::size_t>(s)].event != no_function; }
-  /// Does segment s begin and end on one surface (model/contact_segment.hpp)?
+  /// Does segment s begin and end on one surface (model/events.hpp)?
   bool is_contact_segment(int s) const { return contact_segments_[static_cast<std::size_t>(s)]; }
   int free_count() const { return static_cast<int>(free_parameters_.size()); }
 

@@ -8,7 +8,7 @@
 
 #include "linear/array_kernel.hpp"
 #include "linear/stack_array.hpp"
-#include "model/event_at.hpp"
+#include "model/events.hpp"
 #include "orbit/collocation_rule.hpp"
 #include "orbit/orbit.hpp"
 

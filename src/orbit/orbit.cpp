@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "linear/array_kernel.hpp"
-#include "model/event_at.hpp"
+#include "model/events.hpp"
 
 namespace tchat {
 

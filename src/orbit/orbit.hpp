@@ -165,7 +165,7 @@ inline bool lasts_no_time(const Orbit& x, int s, double period) {
 /// The same where the period is not at hand, which is a sum over all segments.
 inline bool lasts_no_time(const Orbit& x, int s) { return lasts_no_time(x, s, x.period()); }
 
-/// A contact segment (model/contact_segment.hpp) that shrinks to nothing passes zero in proportion to the arclength,
+/// A contact segment (model/events.hpp) that shrinks to nothing passes zero in proportion to the arclength,
 /// so that a located point knows its duration to EPSS, which may be coarse. At a tangency a shorter one is zero.
 inline constexpr double no_contact = 1e-4;
 

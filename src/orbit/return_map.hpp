@@ -6,7 +6,7 @@
 
 #include "linear/array_kernel.hpp"
 #include "linear/sparse_lu.hpp"
-#include "model/weighted_second.hpp"
+#include "model/function_values.hpp"
 #include "orbit/collocation_rule.hpp"
 #include "orbit/condensed_system.hpp"
 #include "orbit/defining_system.hpp"

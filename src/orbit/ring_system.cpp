@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/mode_dimensions.hpp"
+#include "model/events.hpp"
 
 namespace tchat {
 

@@ -35,7 +35,7 @@ class SurfaceRate {
 
 // The end condition of a contact segment, divided by its duration.
 //
-// A contact segment s (model/contact_segment.hpp) begins on the surface h_s = 0 by the end condition of the segment
+// A contact segment s (model/events.hpp) begins on the surface h_s = 0 by the end condition of the segment
 // before it, and ends there. Where it lasts no time the row h_s(x_s(1)) = 0 says the same as that one, and Newton's
 // matrix is singular: the orbits with contact meet those that are merely cut twice at one place, T_s = 0. Divided,
 //
@@ -68,7 +68,7 @@ class ContactRow {
 //
 // Coupling rows: R = n m + E, E the sum of the end conditions.
 //
-// A segment that begins and ends on one surface (model/contact_segment.hpp) has its one end condition divided by its
+// A segment that begins and ends on one surface (model/events.hpp) has its one end condition divided by its
 // duration (ContactRow): that it may last no time is then no singularity. Where all segments are such ones, as
 // when an orbit is cut at its contact alone, the first that is not far shorter than the longest keeps h = 0, else
 // nothing says where the surface is. Which one that is changes no solution and no sign of the determinant: the rows

@@ -9,7 +9,7 @@
 #include "base/user_error.hpp"
 #include "files/auto_format.hpp"
 #include "files/recorded_labels.hpp"
-#include "model/event_at.hpp"
+#include "model/events.hpp"
 #include "plot/gnuplot.hpp"
 #include "plugin/plugin_build.hpp"
 #include "settings/constants_file.hpp"

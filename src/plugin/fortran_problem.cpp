@@ -12,8 +12,8 @@
 #include <new>
 
 #include "base/user_error.hpp"
-#include "model/difference_derivatives.hpp"
-#include "model/parameter_layout.hpp"
+#include "model/hybrid_system.hpp"
+#include "model/parameter_vector.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"
 

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "model/hybrid_system.hpp"
-#include "model/parameter_layout.hpp"
+#include "model/parameter_vector.hpp"
 #include "plugin/expression.hpp"
 #include "plugin/formula_check.hpp"
 

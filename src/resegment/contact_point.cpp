@@ -10,8 +10,7 @@
 
 #include "base/user_error.hpp"
 #include "files/solution_file_reader.hpp"
-#include "model/event_at.hpp"
-#include "model/identity_jump.hpp"
+#include "model/events.hpp"
 #include "model/index_vector.hpp"
 #include "orbit/admissibility.hpp"
 #include "orbit/event_minima.hpp"

@@ -7,9 +7,7 @@
 #include <cmath>
 
 #include "base/user_error.hpp"
-#include "model/contact_segment.hpp"
-#include "model/event_at.hpp"
-#include "model/identity_jump.hpp"
+#include "model/events.hpp"
 #include "orbit/orbit.hpp"
 #include "resegment/contact_point.hpp"
 

@@ -18,7 +18,7 @@ struct OrbitWithoutContacts {
   std::vector<Birth::InnerContact> contacts;
 };
 
-/// The labelled orbit without its contact segments of no duration (model/contact_segment.hpp), and, if the label is of
+/// The labelled orbit without its contact segments of no duration (model/events.hpp), and, if the label is of
 /// an impact of velocity zero, without such impacts and the segments of no duration after them. Nothing when it has
 /// none, or when `wanted`, the signature that the user gave, has as many segments as last some time. Where nothing but
 /// the contact cut the orbit, it is cut where event function `wanted` falls through zero, without `wanted` at the

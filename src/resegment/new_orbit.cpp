@@ -6,9 +6,7 @@
 #include <cstdlib>
 
 #include "base/user_error.hpp"
-#include "model/contact_segment.hpp"
-#include "model/event_at.hpp"
-#include "model/identity_jump.hpp"
+#include "model/events.hpp"
 #include "orbit/admissibility.hpp"
 #include "resegment/contact_point.hpp"
 #include "resegment/signature_match.hpp"

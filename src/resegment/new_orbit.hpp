@@ -52,7 +52,7 @@ IndexVector given_contact(const std::string& text, const HybridSystem& system);
 /// about it is not known then.
 void require_change(const CutList& cut, std::size_t k, const LabelledOrbit& source, const HybridSystem& system);
 
-/// Does a contact segment of no duration (model/contact_segment.hpp) follow contact k of the cut? Throws UserError
+/// Does a contact segment of no duration (model/events.hpp) follow contact k of the cut? Throws UserError
 /// when no orbit with a short contact exists there: the field beyond the surface leads away from it, or back at once
 /// (sliding).
 bool is_contact_born(const CutList& cut, std::size_t k, const LabelledOrbit& source, const HybridSystem& system);

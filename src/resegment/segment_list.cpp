@@ -8,7 +8,7 @@
 #include "base/number.hpp"
 #include "base/user_error.hpp"
 #include "base/words.hpp"
-#include "model/identity_jump.hpp"
+#include "model/events.hpp"
 #include "orbit/orbit.hpp"
 #include "settings/constant_value.hpp"
 #include "settings/settings_type.hpp"

@@ -8,8 +8,7 @@
 #include <optional>
 
 #include "base/user_error.hpp"
-#include "model/identity_jump.hpp"
-#include "model/relevant_events.hpp"
+#include "model/events.hpp"
 
 namespace tchat {
 

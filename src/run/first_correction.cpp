@@ -13,7 +13,7 @@
 #include "continuation/orbit_trend.hpp"
 #include "continuation/path_follower.hpp"
 #include "files/solution_file.hpp"
-#include "model/undefined_value.hpp"
+#include "model/function_values.hpp"
 #include "orbit/defining_system.hpp"
 #include "orbit/mesh_adaptation.hpp"
 #include "orbit/ring_system.hpp"

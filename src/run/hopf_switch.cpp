@@ -15,8 +15,7 @@
 
 #include "base/user_error.hpp"
 #include "linear/dense_matrix.hpp"
-#include "model/event_at.hpp"
-#include "model/identity_jump.hpp"
+#include "model/events.hpp"
 #include "orbit/equilibrium_system.hpp"
 #include "run/branch_switch.hpp"
 #include "run/run_remarks.hpp"

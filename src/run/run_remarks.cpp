@@ -11,9 +11,8 @@
 
 #include "base/words.hpp"
 #include "files/run_files.hpp"
-#include "model/identity_jump.hpp"
+#include "model/events.hpp"
 #include "model/parameter_vector.hpp"
-#include "model/relevant_events.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_setup.hpp"
 #include "settings/constants_file.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "base/user_error.hpp"
-#include "model/identity_jump.hpp"
+#include "model/events.hpp"
 #include "plugin/problem_setup.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"

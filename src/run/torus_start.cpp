@@ -9,7 +9,7 @@
 
 #include "base/user_error.hpp"
 #include "linear/dense_matrix.hpp"
-#include "model/event_at.hpp"
+#include "model/events.hpp"
 #include "orbit/torus_system.hpp"
 #include "plugin/problem_setup.hpp"
 #include "run/solver_settings.hpp"

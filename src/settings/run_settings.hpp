@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "model/index_vector.hpp"
-#include "model/parameter_layout.hpp"
+#include "model/parameter_vector.hpp"
 #include "settings/problem_type.hpp"
 
 namespace tchat {

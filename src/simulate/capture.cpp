@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "model/event_at.hpp"
+#include "model/events.hpp"
 #include "motion/orbit_flow.hpp"
 
 namespace tchat {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "files/dat_file.hpp"
-#include "model/identity_jump.hpp"
+#include "model/events.hpp"
 #include "model/parameter_vector.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"

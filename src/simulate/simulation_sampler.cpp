@@ -10,8 +10,7 @@
 #include <utility>
 
 #include "base/user_error.hpp"
-#include "model/event_at.hpp"
-#include "model/identity_jump.hpp"
+#include "model/events.hpp"
 #include "motion/attractor_search.hpp"
 #include "motion/growth_series.hpp"
 #include "motion/lyapunov_exponents.hpp"

@@ -8,9 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "model/event_at.hpp"
-#include "model/identity_jump.hpp"
-#include "model/relevant_events.hpp"
+#include "model/events.hpp"
 
 namespace tchat {
 

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "model/identity_jump.hpp"
-#include "model/sliding_modes.hpp"
+#include "model/events.hpp"
 #include "orbit/admissibility.hpp"
 #include "orbit/condensed_system.hpp"
 #include "orbit/event_minima.hpp"

@@ -5,7 +5,7 @@
 
 #include "linear/dense_matrix.hpp"
 #include "linear/reflection.hpp"
-#include "model/event_at.hpp"
+#include "model/events.hpp"
 #include "orbit/admissibility.hpp"
 #include "orbit/orbit.hpp"
 

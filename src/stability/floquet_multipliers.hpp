@@ -49,7 +49,7 @@ Eigen::MatrixXd return_matrix(const CondensedSystem& condensed, const Orbit& x, 
 // folds or period doublings ends at grazing) the pencil is singular, and a multiplier has a finite limit that cannot
 // be read off it any more: it is 0/0. Such a one is known by what an error of the orbit's size makes of it.
 //
-// A contact segment (model/contact_segment.hpp) that has shrunk to nothing begins and ends at grazing. Where the
+// A contact segment (model/events.hpp) that has shrunk to nothing begins and ends at grazing. Where the
 // field is continuous there, perturbations pass as if it were not there, and h_x f = 0 takes the place of h = 0 as the
 // section on both sides of it: all multipliers are known.
 //

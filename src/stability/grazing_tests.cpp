@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "linear/dense_matrix.hpp"
-#include "model/event_at.hpp"
+#include "model/events.hpp"
 #include "orbit/admissibility.hpp"
 #include "orbit/condensed_system.hpp"
 #include "orbit/orbit.hpp"

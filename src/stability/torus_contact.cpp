@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "model/event_at.hpp"
+#include "model/events.hpp"
 #include "orbit/admissibility.hpp"
 #include "orbit/condensed_system.hpp"
 #include "orbit/event_minima.hpp"

@@ -11,7 +11,7 @@
 #include "base/user_error.hpp"
 #include "hand_differentiated.hpp"
 #include "linear_oscillator.hpp"
-#include "model/extrapolated_difference.hpp"
+#include "model/checked_function.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

@@ -8,7 +8,7 @@
 #include <tchat/problem.hpp>
 #include <vector>
 
-#include "model/sliding_modes.hpp"
+#include "model/events.hpp"
 #include "orbit/admissibility.hpp"
 #include "support/test_system.hpp"
 

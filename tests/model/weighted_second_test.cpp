@@ -1,4 +1,4 @@
-#include "model/weighted_second.hpp"
+#include "model/function_values.hpp"
 
 #include <Eigen/Core>
 #include <array>

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "directional_derivative.hpp"
-#include "model/boundary_check.hpp"
+#include "model/derivative_check.hpp"
 #include "orbit/bordered_problem.hpp"
 #include "orbit/boundary_value_system.hpp"
 #include "support/test_system.hpp"

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/user_error.hpp"
+#include "model/function_values.hpp"
 #include "model/parameter_vector.hpp"
-#include "model/weighted_second.hpp"
 #include "plugin_folder.hpp"
 
 using namespace tchat;

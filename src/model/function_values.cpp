@@ -1,10 +1,46 @@
-#include "model/weighted_second.hpp"
+#include "model/function_values.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
 namespace tchat {
+
+std::string named_state(const HybridSystem& system, const double* x) {
+  constexpr int most_shown = 8;
+  std::string text;
+  for (int k = 1; k <= std::min(system.dimension(), most_shown); ++k)
+    text += fmt::format("{}{} = {:.6g}", k > 1 ? ", " : "", system.state_name(k), x[k - 1]);
+  if (system.dimension() > most_shown) text += fmt::format(" and {} more", system.dimension() - most_shown);
+  return text;
+}
+
+std::string undefined_value(const HybridSystem& system, FunctionKind kind, int index, const double* x) {
+  return fmt::format("{} has no finite value at {}; {}", system.function_name(kind, index), named_state(system, x),
+                     undefined_value_advice);
+}
+
+std::string no_finite_derivatives(const HybridSystem& system, FunctionKind kind, int index, const Eigen::VectorXd& x) {
+  return fmt::format(
+      "{} has no finite derivatives at x = ({:.6g}); sqrt, cbrt, hypot and atan2 have none at zero, asin and acos none "
+      "at 1 and -1: start elsewhere, or round the function off there, as sqrt(x^2 + 1e-12)",
+      system.function_name(kind, index), fmt::join(x.begin(), x.end(), ", "));
+}
+
+bool has_finite_derivatives(const HybridSystem& system, FunctionKind kind, int index, const double* x,
+                            const double* par) {
+  const int rows = system.rows(kind);
+  Eigen::VectorXd value(rows);
+  Eigen::MatrixXd derivative(rows, system.dimension());
+  double no_parameters = 0.0;
+  system.value(kind, index, x, par, value.data());
+  if (!value.allFinite()) return true;
+  system.first(kind, index, x, par, {}, value.data(), derivative.data(), &no_parameters);
+  return derivative.allFinite();
+}
 
 WeightedSecond::WeightedSecond(const HybridSystem& system, FunctionKind kind, std::vector<int> active, int points,
                                int directions)
