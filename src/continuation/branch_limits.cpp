@@ -9,7 +9,7 @@
 #include "continuation/newton_chord.hpp"
 #include "continuation/solution_measure.hpp"
 #include "linear/dense_matrix.hpp"
-#include "linear/stack_array.hpp"
+#include "linear/memory.hpp"
 #include "orbit/condensed_system.hpp"
 
 namespace tchat {

@@ -1,12 +1,10 @@
 #include "linear/dense_matrix.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <vector>
 
 #include "linear/lapack.hpp"
-#include "linear/reflection.hpp"
 
 namespace tchat {
 

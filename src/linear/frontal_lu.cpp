@@ -5,11 +5,8 @@
 #include <cstddef>
 #include <iterator>
 #include <limits>
-#include <utility>
 
-#include "linear/fetch_ahead.hpp"
 #include "linear/partial_lu.hpp"
-#include "linear/permutation.hpp"
 
 namespace tchat {
 

@@ -1,14 +1,4 @@
-/// LU of a sparse matrix whose rows come in groups along a chain or a ring, by frontal matrices [I. S. Duff, J. K.
-/// Reid, SIAM J. Sci. Stat. Comput. 5 (1984) 633].
-///
-/// A frontal matrix is a dense block of the rows of neighbouring groups. As soon as all rows are together in which a
-/// column has entries, the column is eliminated with pivoting among the rows there (partial_lu.hpp), and what is left
-/// of the rows goes into the frontal matrix of twice as many groups: halves are made from their halves, as with the
-/// mesh intervals of a segment, and for the same reason (segment_elimination.hpp). The last one has what is left, the
-/// border rows among it; these may have entries in all columns, are eliminated on the way and never chosen as pivots
-/// before. Where a group touches its neighbours only, work is linear in the number of groups.
-///
-/// Rows are divided by their sums of magnitudes first. All arrays are allocated when the object is made.
+/// LU of sparse matrices by frontal matrices, and permutations.
 #pragma once
 
 #include <optional>
@@ -16,9 +6,32 @@
 #include <utility>
 #include <vector>
 
-#include "linear/aligned_allocator.hpp"
+#include "linear/memory.hpp"
 
 namespace tchat {
+
+/// Sign of a permutation of 0, 1, ..., by its cycles.
+inline int permutation_parity(std::vector<int> order) {
+  int sign = 1;
+  for (std::size_t k = 0; k < order.size(); ++k)
+    while (order[k] != static_cast<int>(k)) {
+      std::swap(order[k], order[static_cast<std::size_t>(order[k])]);
+      sign = -sign;
+    }
+  return sign;
+}
+
+// LU of a sparse matrix whose rows come in groups along a chain or a ring, by frontal matrices [I. S. Duff, J. K.
+// Reid, SIAM J. Sci. Stat. Comput. 5 (1984) 633].
+//
+// A frontal matrix is a dense block of the rows of neighbouring groups. As soon as all rows are together in which a
+// column has entries, the column is eliminated with pivoting among the rows there (partial_lu.hpp), and what is left
+// of the rows goes into the frontal matrix of twice as many groups: halves are made from their halves, as with the
+// mesh intervals of a segment, and for the same reason (segment_elimination.hpp). The last one has what is left, the
+// border rows among it; these may have entries in all columns, are eliminated on the way and never chosen as pivots
+// before. Where a group touches its neighbours only, work is linear in the number of groups.
+//
+// Rows are divided by their sums of magnitudes first. All arrays are allocated when the object is made.
 
 class FrontalLu {
  public:

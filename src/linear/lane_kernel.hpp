@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "linear/aligned_allocator.hpp"
+#include "linear/memory.hpp"
 
 namespace tchat {
 

@@ -1,19 +1,23 @@
-/// Partial LU elimination of a small dense row-major block, the kernel of condensation (5.30-5.47).
-///
-/// A block has `rows` + `border` rows and `width` columns. The first `pivots` columns are eliminated with partial
-/// pivoting among the first `rows` rows; border rows (integral conditions, gradients that stand for those of a curve's
-/// condition) are eliminated too but never chosen as pivot rows. In place: afterwards the first `pivots` rows hold U
-/// and what it couples to, the multipliers stand below the diagonal, and the remaining rows hold the Schur complement.
-///
-/// The sizes are a template parameter, so that small common sizes compile to unrolled code: FixedSizes, or
-/// DynamicSizes for all others. Columns are updated four pivots at a time, so that every entry right of the pivots is
-/// read and written once per four pivots.
+/// Dense LU of small matrices: partial elimination of blocks, with compiled code for common sizes, and whole matrices.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 namespace tchat {
+
+// Partial LU elimination of a small dense row-major block, the kernel of condensation (5.30-5.47).
+//
+// A block has `rows` + `border` rows and `width` columns. The first `pivots` columns are eliminated with partial
+// pivoting among the first `rows` rows; border rows (integral conditions, gradients that stand for those of a curve's
+// condition) are eliminated too but never chosen as pivot rows. In place: afterwards the first `pivots` rows hold U
+// and what it couples to, the multipliers stand below the diagonal, and the remaining rows hold the Schur complement.
+//
+// The sizes are a template parameter, so that small common sizes compile to unrolled code: FixedSizes, or
+// DynamicSizes for all others. Columns are updated four pivots at a time, so that every entry right of the pivots is
+// read and written once per four pivots.
 
 template <int Rows, int Pivots, int Width>
 struct FixedSizes {
@@ -139,5 +143,90 @@ void backward(const Sizes& sizes, const double* a, const double* __restrict rhs,
     for (int i = 0; i < k; ++i) x[i] -= a[i * width + k] * known;
   }
 }
+
+// Partial LU behind one type: a block size chosen at run time, with compiled-in code for the common ones.
+
+class BlockKernel {
+ public:
+  /// rows x width block whose first `pivots` columns are eliminated; width must be a multiple of row_padding.
+  BlockKernel(int rows, int pivots, int width);
+
+  int rows() const { return rows_; }
+  int pivots() const { return pivots_; }
+  int width() const { return width_; }
+
+  /// See the functions of these names above.
+  bool eliminate(double* a, int border, int* swaps) const { return eliminate_(*this, a, border, swaps); }
+  void forward(const double* a, int border, const int* swaps, double* rhs) const {
+    forward_(*this, a, border, swaps, rhs);
+  }
+  void forward_transposed(const double* a, const int* swaps, double* weights) const {
+    forward_transposed_(*this, a, swaps, weights);
+  }
+  void backward(const double* a, const double* rhs, double* x) const { backward_(*this, a, rhs, x); }
+
+ private:
+  template <class Choice>
+  void use();
+  template <int N, int C>
+  bool try_sizes();
+
+  int rows_;
+  int pivots_;
+  int width_;
+  bool (*eliminate_)(const BlockKernel&, double*, int, int*);
+  void (*forward_)(const BlockKernel&, const double*, int, const int*, double*);
+  void (*forward_transposed_)(const BlockKernel&, const double*, const int*, double*);
+  void (*backward_)(const BlockKernel&, const double*, const double*, double*);
+};
+
+/// The kernel that condenses one mesh interval of c collocation points in dimension n with k scalar unknowns
+/// (duration and free parameters): rows c n, columns (interior nodes | left node | right node | scalars).
+BlockKernel interval_kernel(int n, int c, int scalars);
+
+/// The kernel that joins two neighbouring condensed blocks: 2n rows, columns (middle | first | last | scalars).
+BlockKernel join_kernel(int n, int scalars);
+
+// Dense LU of one small matrix after the other: what is left of a Newton matrix of few segments has ten rows, and a
+// sparse solver's bookkeeping would take ten times as long as its arithmetic. All arrays are allocated when the object
+// is made.
+
+class SmallLu {
+ public:
+  explicit SmallLu(int size);
+
+  /// The entries that factorize() reads, row by row.
+  double* entries() { return entries_.data(); }
+  /// Of the matrix with rows of unit sum (of magnitudes), with row pivoting; the entries are then its factors. False
+  /// when it is singular or not finite.
+  bool factorize();
+
+  /// x = A^-1 b, or A^-T b, refined once: near a branch point, where A is almost singular, the residual stays that of
+  /// rounding. x and b are different arrays.
+  void solve(const double* b, double* x);
+  void solve_transposed(const double* b, double* x);
+  /// The same as the factors give it, for iterations that need no more.
+  void solve_unrefined(const double* b, double* x);
+  void solve_transposed_unrefined(const double* b, double* x);
+
+  /// Pivot k, which is never zero, and the number that its row of A was divided by: their product over all k is the
+  /// determinant, but for the sign that parity() is.
+  double pivot(int k) const;
+  double row_sum(int k) const { return row_sums_[at(k)]; }
+  int parity() const;
+
+ private:
+  static std::size_t at(int k) { return static_cast<std::size_t>(k); }
+  const double* row(int i) const { return entries_.data() + i * size_; }
+  void apply_inverse(double* right, double* x) const;               // of the scaled matrix
+  void apply_inverse_transposed(const double* b, double* x) const;  // of the scaled matrix
+
+  int size_;
+  std::vector<double> entries_;  // after factorize() L below the diagonal, reciprocal pivots on it, U above
+  std::vector<double> scaled_;   // the matrix with rows of unit sum
+  std::vector<double> row_sums_;
+  std::vector<double> right_, change_;  // scratch
+  std::vector<int> swaps_;              // the row exchanged with row k
+};
 
 }  // namespace tchat

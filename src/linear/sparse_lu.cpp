@@ -11,8 +11,7 @@
 #include <utility>
 
 #include "linear/frontal_lu.hpp"
-#include "linear/permutation.hpp"
-#include "linear/small_lu.hpp"
+#include "linear/partial_lu.hpp"
 
 namespace tchat {
 

@@ -1,7 +1,7 @@
 /// UMFPACK for a sequence of square sparse matrices of one pattern: the symbolic analysis is made once, the numeric
-/// factorisation once per matrix. Matrices of few rows are factored as dense ones (small_lu.hpp), those of a long chain
-/// or ring of groups of rows by frontal matrices (frontal_lu.hpp); both without allocation, and much faster where most
-/// of the work would be a sparse solver's bookkeeping.
+/// factorisation once per matrix. Matrices of few rows are factored as dense ones (partial_lu.hpp), those of a long
+/// chain or ring of groups of rows by frontal matrices (frontal_lu.hpp); both without allocation, and much faster where
+/// most of the work would be a sparse solver's bookkeeping.
 #pragma once
 
 #include <memory>

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "linear/array_kernel.hpp"
-#include "linear/stack_array.hpp"
+#include "linear/memory.hpp"
 #include "model/events.hpp"
 
 namespace tchat {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "linear/stack_array.hpp"
+#include "linear/memory.hpp"
 
 namespace tchat {
 

@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "linear/array_kernel.hpp"
-#include "linear/block_array.hpp"
+#include "linear/memory.hpp"
 #include "linear/sparse_lu.hpp"
 #include "orbit/collocation_rule.hpp"
 #include "orbit/defining_system.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "linear/array_kernel.hpp"
-#include "linear/stack_array.hpp"
+#include "linear/memory.hpp"
 #include "model/events.hpp"
 #include "orbit/collocation_rule.hpp"
 #include "orbit/orbit.hpp"

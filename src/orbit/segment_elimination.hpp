@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "linear/block_array.hpp"
-#include "linear/block_kernel.hpp"
 #include "linear/lane_kernel.hpp"
+#include "linear/memory.hpp"
+#include "linear/partial_lu.hpp"
 #include "linear/shared_work.hpp"
 #include "model/hybrid_system.hpp"
 #include "orbit/collocation_rule.hpp"

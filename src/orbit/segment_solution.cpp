@@ -3,7 +3,7 @@
 #include <array>
 #include <cassert>
 
-#include "linear/fetch_ahead.hpp"
+#include "linear/memory.hpp"
 #include "orbit/segment_elimination.hpp"
 
 namespace tchat {

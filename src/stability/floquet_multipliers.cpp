@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "linear/dense_matrix.hpp"
-#include "linear/reflection.hpp"
 #include "model/events.hpp"
 #include "orbit/admissibility.hpp"
 #include "orbit/orbit.hpp"

@@ -10,8 +10,8 @@
 
 #include "benchmark/branch_walk.hpp"
 #include "benchmark/timing.hpp"
-#include "linear/block_kernel.hpp"
 #include "linear/lane_kernel.hpp"
+#include "linear/partial_lu.hpp"
 
 extern "C" void dgemm_(const char* transposed_a, const char* transposed_b, const int* m, const int* n, const int* k,
                        const double* alpha, const double* a, const int* lda, const double* b, const int* ldb,

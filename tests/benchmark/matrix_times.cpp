@@ -11,7 +11,6 @@
 #include "benchmark/timing.hpp"
 #include "linear/lane_kernel.hpp"
 #include "linear/partial_lu.hpp"
-#include "linear/small_lu.hpp"
 
 namespace tchat::benchmark {
 

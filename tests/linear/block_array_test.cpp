@@ -1,4 +1,4 @@
-#include "linear/block_array.hpp"
+#include "linear/memory.hpp"
 
 #include <catch2/catch.hpp>
 

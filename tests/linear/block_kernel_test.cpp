@@ -2,7 +2,6 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "linear/block_kernel.hpp"
 #include "linear/dense_matrix.hpp"
 #include "linear/partial_lu.hpp"
 #include "support/random_matrices.hpp"

@@ -6,8 +6,6 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "linear/reflection.hpp"
-
 using namespace tchat;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;

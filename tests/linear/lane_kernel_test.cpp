@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "linear/block_kernel.hpp"
 #include "linear/lane_kernel.hpp"
+#include "linear/partial_lu.hpp"
 #include "support/upper_halves.hpp"
 
 using namespace tchat;

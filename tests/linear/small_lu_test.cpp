@@ -1,5 +1,5 @@
 // Dense factors of small matrices against Eigen's with complete pivoting, in long double.
-#include "linear/small_lu.hpp"
+#include "linear/partial_lu.hpp"
 
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
