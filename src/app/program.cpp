@@ -1,44 +1,56 @@
 #include "app/program.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <functional>
+#include <initializer_list>
 #include <iostream>
 #include <new>
 #include <string_view>
 
-#include "app/check_command.hpp"
-#include "app/complete_command.hpp"
-#include "app/constants_command.hpp"
-#include "app/dat_command.hpp"
-#include "app/explore_command.hpp"
-#include "app/grazing_command.hpp"
-#include "app/help_format.hpp"
-#include "app/labels_command.hpp"
-#include "app/manual_page.hpp"
-#include "app/new_command.hpp"
-#include "app/orbit_command.hpp"
+#include "app/file_commands.hpp"
+#include "app/help.hpp"
 #include "app/plot_command.hpp"
-#include "app/resegment_command.hpp"
-#include "app/run_command.hpp"
-#include "app/simulate_command.hpp"
-#include "app/standard_descriptors.hpp"
-#include "app/standard_output.hpp"
-#include "app/sweep_command.hpp"
-#include "app/table_command.hpp"
-#include "app/usage_error.hpp"
-#include "app/verify_command.hpp"
+#include "app/problem_commands.hpp"
+#include "app/run_commands.hpp"
+#include "app/simulation_commands.hpp"
 #include "app/version_text.hpp"
 #include "base/printable.hpp"
 #include "base/user_error.hpp"
 
 namespace tchat {
+
+void occupy_standard_descriptors() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(descriptor, F_GETFD) >= 0) continue;
+    const int wrong_way = descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY;
+    // The lowest free number is taken, and all below this one are in use.
+    if (::open("/dev/null", wrong_way) != descriptor) return;  // without /dev/null there is nothing to put there
+  }
+}
+
+std::string lost_output() {
+  errno = 0;
+  std::cout.flush();
+  const bool flushed = std::fflush(stdout) == 0;
+  if (flushed && std::cout && std::ferror(stdout) == 0) return "";
+  // An earlier write may have failed: its reason is gone then.
+  const std::string reason = errno != 0 ? fmt::format(" ({})", std::strerror(errno)) : "";
+  return fmt::format(
+      "standard output cannot be written{}: what was printed is lost, wholly or in part; is the disk full, "
+      "or is it closed?",
+      reason);
+}
 
 namespace {
 

@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/labels_command.hpp"
-#include "app/orbit_command.hpp"
+#include "app/file_commands.hpp"
 #include "base/user_error.hpp"
 #include "files/sample_orbits.hpp"
 #include "files/solution_file.hpp"

@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "../plugin/plugin_folder.hpp"
-#include "app/check_command.hpp"
+#include "app/problem_commands.hpp"
 #include "base/user_error.hpp"
 #include "hand_differentiated.hpp"
 #include "linear_oscillator.hpp"
