@@ -12,8 +12,7 @@
 #include <vector>
 
 #include "app/command_options.hpp"
-#include "base/user_error.hpp"
-#include "base/warnings.hpp"
+#include "base/messages.hpp"
 #include "files/auto_format.hpp"
 #include "files/branch_file.hpp"
 #include "files/recorded_labels.hpp"

@@ -14,8 +14,7 @@
 #include <string_view>
 #include <utility>
 
-#include "base/near_words.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 #include "files/auto_format.hpp"
 #include "files/replaced_file.hpp"

@@ -8,8 +8,7 @@
 #include <cctype>
 #include <filesystem>
 
-#include "base/number.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 #include "files/recorded_labels.hpp"
 #include "files/simulation_files.hpp"

@@ -11,9 +11,7 @@
 #include <memory>
 #include <optional>
 
-#include "base/number.hpp"
-#include "base/user_error.hpp"
-#include "base/warnings.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 #include "files/auto_format.hpp"
 #include "files/diagnostics_file.hpp"

@@ -25,8 +25,7 @@
 #include "app/run_commands.hpp"
 #include "app/simulation_commands.hpp"
 #include "app/version_text.hpp"
-#include "base/printable.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 
 namespace tchat {
 

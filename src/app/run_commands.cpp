@@ -11,8 +11,7 @@
 #include <sstream>
 
 #include "app/command_options.hpp"
-#include "base/user_error.hpp"
-#include "base/warnings.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 #include "explore/explorer.hpp"
 #include "maps/analyse_grazing.hpp"

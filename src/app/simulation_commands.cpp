@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "app/command_options.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 #include "maps/map_sweep_problem.hpp"
 #include "maps/simulated_torus.hpp"

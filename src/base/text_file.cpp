@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 
 namespace tchat {
 

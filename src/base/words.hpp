@@ -1,6 +1,8 @@
-/// Lines and words of texts, and words in messages.
+/// Words, lines and numbers of texts, and suggestions for words that are not known.
 #pragma once
 
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,5 +23,24 @@ std::string_view trimmed(std::string_view text);
 
 /// `line` without a carriage return at its end.
 std::string_view without_carriage_return(std::string_view line);
+
+/// In capitals, where they are letters of ASCII.
+std::string upper(std::string_view word);
+
+/// Those of `known` that are spelled much like `word` or contain it, in any case, best first, at most five.
+std::vector<std::string> near_words(std::string_view word, std::span<const std::string> known);
+
+// Numbers in texts: one reader for constants, files, formulas and the command line.
+
+/// The whole text as a finite number with exponent letter e, E, d or D: `1.5`, `+1.5E-03`, `1.5d-03`. Nothing
+/// for any other text, for inf and nan, and for numbers out of the range of double.
+std::optional<double> parse_real(std::string_view text);
+
+/// As Fortran programs write them: `1.5E-101` may be `1.5-101`, a three-digit exponent without its letter; a number too
+/// small for a double is zero.
+std::optional<double> parse_fortran_real(std::string_view text);
+
+/// The whole text as an integer; nothing for one whose negative is no int: signs are taken off everywhere.
+std::optional<int> parse_integer(std::string_view text);
 
 }  // namespace tchat

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "base/number.hpp"
 #include "base/words.hpp"
 #include "files/dat_file.hpp"
 #include "files/solution_file_reader.hpp"

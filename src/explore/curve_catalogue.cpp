@@ -8,7 +8,7 @@
 #include <functional>
 #include <numeric>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 #include "plugin/plugin_build.hpp"
 #include "settings/point_type.hpp"

@@ -17,9 +17,8 @@
 #include <numeric>
 #include <string_view>
 
-#include "base/number.hpp"
+#include "base/messages.hpp"
 #include "base/text_file.hpp"
-#include "base/user_error.hpp"
 #include "base/words.hpp"
 #include "files/replaced_file.hpp"
 #include "orbit/quantity.hpp"

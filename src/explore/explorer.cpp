@@ -10,9 +10,7 @@
 #include <optional>
 #include <set>
 
-#include "base/number.hpp"
-#include "base/user_error.hpp"
-#include "base/warnings.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 #include "explore/branch_ends.hpp"
 #include "explore/branch_recognition.hpp"

@@ -14,7 +14,7 @@
 #include <optional>
 #include <set>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/auto_format.hpp"
 #include "files/solution_file_reader.hpp"
 #include "settings/point_type.hpp"

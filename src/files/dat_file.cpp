@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/number.hpp"
+#include "base/messages.hpp"
 #include "base/text_file.hpp"
-#include "base/user_error.hpp"
 #include "base/words.hpp"
 #include "model/parameter_vector.hpp"
 #include "plugin/problem_setup.hpp"

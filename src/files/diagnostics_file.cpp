@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/number.hpp"
 #include "base/text_file.hpp"
 #include "base/words.hpp"
 #include "files/auto_format.hpp"

@@ -7,7 +7,7 @@
 #include <complex>
 #include <filesystem>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/auto_format.hpp"
 #include "files/point_file_reader.hpp"
 #include "files/solution_file_reader.hpp"

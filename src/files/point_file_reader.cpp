@@ -9,9 +9,8 @@
 #include <optional>
 #include <utility>
 
-#include "base/number.hpp"
+#include "base/messages.hpp"
 #include "base/text_file.hpp"
-#include "base/user_error.hpp"
 #include "base/words.hpp"
 #include "settings/constant_value.hpp"
 #include "settings/problem_type.hpp"

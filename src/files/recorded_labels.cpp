@@ -7,9 +7,8 @@
 #include <filesystem>
 #include <string_view>
 
-#include "base/number.hpp"
+#include "base/messages.hpp"
 #include "base/text_file.hpp"
-#include "base/user_error.hpp"
 #include "base/words.hpp"
 #include "files/auto_format.hpp"
 #include "files/diagnostics_file.hpp"

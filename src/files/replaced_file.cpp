@@ -15,7 +15,7 @@
 #include <random>
 #include <utility>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 
 namespace tchat {
 

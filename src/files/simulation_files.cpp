@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <sstream>
 
-#include "base/number.hpp"
+#include "base/messages.hpp"
 #include "base/text_file.hpp"
-#include "base/user_error.hpp"
 #include "base/words.hpp"
 #include "settings/constant_value.hpp"
 

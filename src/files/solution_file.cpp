@@ -6,9 +6,8 @@
 #include <span>
 #include <stdexcept>
 
-#include "base/number.hpp"
+#include "base/messages.hpp"
 #include "base/text_file.hpp"
-#include "base/user_error.hpp"
 #include "base/words.hpp"
 #include "files/auto_format.hpp"
 #include "settings/constant_value.hpp"

@@ -9,9 +9,8 @@
 #include <map>
 #include <optional>
 
-#include "base/number.hpp"
+#include "base/messages.hpp"
 #include "base/text_file.hpp"
-#include "base/user_error.hpp"
 #include "base/words.hpp"
 #include "files/auto_format.hpp"
 #include "files/solution_file.hpp"

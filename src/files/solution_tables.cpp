@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "settings/point_type.hpp"
 
 namespace tchat {

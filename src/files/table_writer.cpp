@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "base/printable.hpp"
+#include "base/messages.hpp"
 
 namespace tchat {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "orbit/bordered_problem.hpp"
 #include "orbit/curve_conditions.hpp"
 #include "orbit/defining_system.hpp"

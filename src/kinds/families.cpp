@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "continuation/branch_limits.hpp"
 #include "continuation/orbit_trend.hpp"
 #include "files/orbit_trace.hpp"

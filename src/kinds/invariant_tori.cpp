@@ -1,7 +1,7 @@
 /// Invariant tori: an odd number of orbits of one return each; the analysis of their branches and their problem types.
 #include <fmt/format.h>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/orbit_trace.hpp"
 #include "kinds/families.hpp"
 #include "kinds/verify_solutions.hpp"

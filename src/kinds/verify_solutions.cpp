@@ -10,8 +10,7 @@
 #include <map>
 #include <utility>
 
-#include "base/folded.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/auto_format.hpp"
 #include "files/diagnostics_file.hpp"
 #include "files/run_files.hpp"

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <complex>
 
-#include "base/user_error.hpp"
-#include "base/warnings.hpp"
+#include "base/messages.hpp"
 #include "files/auto_format.hpp"
 #include "files/run_files.hpp"
 #include "files/solution_file_reader.hpp"

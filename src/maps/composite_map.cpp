@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "linear/dense_matrix.hpp"
 #include "maps/invariant_curve.hpp"
 #include "motion/attractor_search.hpp"

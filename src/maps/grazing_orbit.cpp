@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
 #include "motion/orbit_flow.hpp"

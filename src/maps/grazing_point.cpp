@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
 

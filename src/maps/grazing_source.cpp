@@ -8,9 +8,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "base/number.hpp"
+#include "base/messages.hpp"
 #include "base/text_file.hpp"
-#include "base/user_error.hpp"
 #include "base/words.hpp"
 #include "files/point_file.hpp"
 #include "files/solution_file_reader.hpp"

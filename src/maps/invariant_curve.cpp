@@ -7,7 +7,7 @@
 #include <functional>
 #include <utility>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "linear/dense_matrix.hpp"
 
 namespace tchat {

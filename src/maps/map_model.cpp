@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/run_files.hpp"
 #include "files/solution_file_reader.hpp"
 #include "maps/grazing_orbit.hpp"

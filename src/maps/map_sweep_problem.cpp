@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/dat_file.hpp"
 #include "files/point_file.hpp"
 #include "simulate/simulation_start.hpp"

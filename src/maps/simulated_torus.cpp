@@ -7,8 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "base/progress_line.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/auto_format.hpp"
 #include "files/dat_file.hpp"
 #include "files/replaced_file.hpp"

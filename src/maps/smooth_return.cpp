@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "model/events.hpp"
 #include "motion/cvodes_flow.hpp"
 #include "motion/hybrid_simulation.hpp"

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "model/events.hpp"
 #include "motion/hybrid_simulation.hpp"
 #include "motion/orbit_flow.hpp"

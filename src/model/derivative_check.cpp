@@ -10,7 +10,7 @@
 #include <random>
 #include <set>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "model/checked_function.hpp"
 #include "model/function_values.hpp"
 #include "model/parameter_vector.hpp"

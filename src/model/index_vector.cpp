@@ -4,8 +4,7 @@
 
 #include <algorithm>
 
-#include "base/number.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 #include "model/parameter_vector.hpp"
 

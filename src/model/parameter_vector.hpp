@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "base/number.hpp"
+#include "base/words.hpp"
 
 namespace tchat {
 

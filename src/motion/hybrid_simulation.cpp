@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "model/events.hpp"
 #include "model/function_values.hpp"
 

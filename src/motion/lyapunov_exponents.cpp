@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "model/events.hpp"
 #include "model/function_values.hpp"
 #include "motion/cvodes_flow.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
 #include "model/function_values.hpp"

@@ -8,8 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/number.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 #include "orbit/collocation_rule.hpp"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 
 namespace tchat {
 

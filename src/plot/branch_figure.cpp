@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/auto_format.hpp"
 #include "files/solution_file.hpp"
 #include "plot/branch_quantity.hpp"

@@ -9,8 +9,7 @@
 #include <cstdlib>
 #include <limits>
 
-#include "base/number.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 #include "files/table_writer.hpp"
 #include "plot/column_expression.hpp"

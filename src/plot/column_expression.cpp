@@ -9,8 +9,7 @@
 #include <limits>
 #include <sstream>
 
-#include "base/number.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 #include "plot/gnuplot.hpp"
 #include "plot/gnuplot_script.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/auto_format.hpp"
 #include "files/recorded_labels.hpp"
 #include "model/events.hpp"

@@ -8,7 +8,7 @@
 #include <limits>
 #include <map>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 
 namespace tchat {
 

@@ -12,7 +12,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 
 namespace tchat {

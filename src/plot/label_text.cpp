@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 #include "settings/constant_value.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/orbit_trace.hpp"
 #include "plot/figure.hpp"
 

@@ -10,7 +10,7 @@
 #include <limits>
 #include <set>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 #include "files/simulation_files.hpp"
 #include "model/parameter_vector.hpp"

@@ -10,7 +10,7 @@
 #include <system_error>
 #include <vector>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 #include "files/auto_format.hpp"
 #include "files/orbit_trace.hpp"

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <optional>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/table_writer.hpp"
 #include "plot/figure.hpp"
 

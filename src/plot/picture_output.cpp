@@ -7,8 +7,8 @@
 #include <fstream>
 #include <memory>
 
+#include "base/messages.hpp"
 #include "base/text_file.hpp"
-#include "base/user_error.hpp"
 #include "files/replaced_file.hpp"
 #include "plot/gnuplot.hpp"
 #include "plot/gnuplot_script.hpp"

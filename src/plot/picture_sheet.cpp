@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <unordered_set>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 
 namespace tchat {
 

@@ -10,8 +10,7 @@
 #include <map>
 #include <string_view>
 
-#include "base/number.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 #include "plot/column_expression.hpp"
 #include "settings/constant_value.hpp"

@@ -10,9 +10,8 @@
 #include <sstream>
 #include <utility>
 
-#include "base/number.hpp"
+#include "base/messages.hpp"
 #include "base/text_file.hpp"
-#include "base/user_error.hpp"
 #include "base/words.hpp"
 #include "files/point_file_reader.hpp"
 #include "settings/constant_value.hpp"

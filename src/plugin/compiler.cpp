@@ -12,7 +12,7 @@
 #include <future>
 #include <sstream>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 #include "plugin/build_stamp.hpp"
 #include "plugin/compiler_process.hpp"

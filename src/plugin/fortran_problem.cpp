@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <new>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "model/hybrid_system.hpp"
 #include "model/parameter_vector.hpp"
 #include "settings/problem_type.hpp"

@@ -17,8 +17,8 @@
 #include <fstream>
 #include <string_view>
 
+#include "base/messages.hpp"
 #include "base/text_file.hpp"
-#include "base/user_error.hpp"
 #include "base/words.hpp"
 #include "plugin/build_stamp.hpp"
 #include "plugin/cpp_writer.hpp"

@@ -16,7 +16,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "plugin/compiler_process.hpp"
 
 namespace tchat {

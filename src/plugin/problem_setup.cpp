@@ -11,10 +11,9 @@
 #include <fstream>
 #include <optional>
 
-#include "base/near_words.hpp"
-#include "base/number.hpp"
+#include "base/messages.hpp"
 #include "base/text_file.hpp"
-#include "base/user_error.hpp"
+#include "base/words.hpp"
 #include "model/events.hpp"
 #include "orbit/quantity.hpp"
 #include "plugin/formula_file.hpp"

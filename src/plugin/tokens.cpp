@@ -8,9 +8,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "base/near_words.hpp"
-#include "base/number.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
+#include "base/words.hpp"
 
 namespace tchat::formulas {
 

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/solution_file_reader.hpp"
 #include "model/events.hpp"
 #include "model/index_vector.hpp"

@@ -6,7 +6,7 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "model/events.hpp"
 #include "orbit/orbit.hpp"
 #include "resegment/contact_point.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/dat_file.hpp"
 #include "orbit/mesh_adaptation.hpp"
 #include "orbit/periodic_orbit_system.hpp"

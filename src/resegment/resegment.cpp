@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/auto_format.hpp"
 #include "files/replaced_file.hpp"
 #include "files/run_files.hpp"

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/number.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 #include "model/events.hpp"
 #include "orbit/orbit.hpp"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "model/events.hpp"
 
 namespace tchat {

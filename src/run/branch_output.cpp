@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/progress_line.hpp"
+#include "base/messages.hpp"
 #include "files/auto_format.hpp"
 #include "files/diagnostics_file.hpp"
 #include "files/point_file.hpp"

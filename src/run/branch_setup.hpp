@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "continuation/path_follower.hpp"
 #include "orbit/bordered_problem.hpp"
 #include "orbit/defining_system.hpp"

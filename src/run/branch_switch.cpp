@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/solution_file.hpp"
 #include "orbit/curve_conditions.hpp"
 #include "settings/point_type.hpp"

@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "base/folded.hpp"
+#include "base/messages.hpp"
 #include "continuation/solution_measure.hpp"
 #include "files/auto_format.hpp"
 #include "files/solution_file.hpp"

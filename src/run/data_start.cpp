@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/dat_file.hpp"
 #include "files/run_files.hpp"
 #include "files/simulation_files.hpp"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "continuation/orbit_trend.hpp"
 #include "continuation/path_follower.hpp"
 #include "files/solution_file.hpp"

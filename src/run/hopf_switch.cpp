@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
 #include "orbit/equilibrium_system.hpp"

@@ -9,8 +9,7 @@
 #include <map>
 #include <memory>
 
-#include "base/user_error.hpp"
-#include "base/warnings.hpp"
+#include "base/messages.hpp"
 #include "continuation/continuation_run.hpp"
 #include "files/solution_file.hpp"
 #include "plugin/plugin_build.hpp"

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "model/events.hpp"
 #include "plugin/problem_setup.hpp"
 #include "settings/problem_type.hpp"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
 #include "orbit/torus_system.hpp"

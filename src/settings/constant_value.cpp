@@ -8,9 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/number.hpp"
-#include "base/printable.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 #include "settings/point_type.hpp"
 

@@ -10,9 +10,8 @@
 #include <optional>
 #include <utility>
 
-#include "base/number.hpp"
+#include "base/messages.hpp"
 #include "base/text_file.hpp"
-#include "base/user_error.hpp"
 #include "base/words.hpp"
 #include "settings/keyword_form.hpp"
 #include "settings/settings_check.hpp"

@@ -8,7 +8,7 @@
 #include <cctype>
 #include <cmath>
 
-#include "base/near_words.hpp"
+#include "base/words.hpp"
 #include "model/hybrid_system.hpp"
 #include "settings/point_type.hpp"
 #include "settings/problem_type.hpp"

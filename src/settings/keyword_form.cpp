@@ -5,8 +5,7 @@
 
 #include <cctype>
 
-#include "base/number.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 
 namespace tchat {

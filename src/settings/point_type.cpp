@@ -7,7 +7,7 @@
 #include <array>
 #include <cstdlib>
 
-#include "base/number.hpp"
+#include "base/words.hpp"
 
 namespace tchat {
 

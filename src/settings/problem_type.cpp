@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "settings/point_type.hpp"
 
 namespace tchat {

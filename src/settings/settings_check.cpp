@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/number.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 #include "settings/constants_table.hpp"
 #include "settings/problem_type.hpp"

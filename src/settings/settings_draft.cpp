@@ -6,8 +6,7 @@
 #include <cctype>
 #include <numeric>
 
-#include "base/number.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/settings_check.hpp"

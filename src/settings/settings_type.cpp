@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "settings/problem_type.hpp"
 
 namespace tchat {

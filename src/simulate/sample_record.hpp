@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "model/index_vector.hpp"
 #include "motion/growth_series.hpp"
 

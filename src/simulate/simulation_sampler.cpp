@@ -9,7 +9,7 @@
 #include <map>
 #include <utility>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "model/events.hpp"
 #include "motion/attractor_search.hpp"
 #include "motion/growth_series.hpp"

@@ -7,8 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "base/number.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "base/words.hpp"
 #include "files/dat_file.hpp"
 #include "files/run_files.hpp"

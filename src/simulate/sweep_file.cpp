@@ -10,9 +10,8 @@
 #include <optional>
 #include <string_view>
 
-#include "base/number.hpp"
+#include "base/messages.hpp"
 #include "base/text_file.hpp"
-#include "base/user_error.hpp"
 #include "base/words.hpp"
 #include "plugin/problem_setup.hpp"
 #include "simulate/simulation_start.hpp"

@@ -12,9 +12,8 @@
 #include <set>
 #include <utility>
 
-#include "base/number.hpp"
-#include "base/progress_line.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
+#include "base/words.hpp"
 #include "files/replaced_file.hpp"
 #include "simulate/attractor_numbering.hpp"
 #include "simulate/sweep_workers.hpp"

@@ -8,8 +8,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "base/messages.hpp"
 #include "base/text_file.hpp"
-#include "base/user_error.hpp"
 #include "simulate/attractor_numbering.hpp"
 
 namespace tchat {

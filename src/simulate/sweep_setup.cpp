@@ -9,9 +9,9 @@
 #include <memory>
 #include <utility>
 
-#include "base/number.hpp"
+#include "base/messages.hpp"
 #include "base/text_file.hpp"
-#include "base/user_error.hpp"
+#include "base/words.hpp"
 #include "files/point_file.hpp"
 #include "orbit/quantity.hpp"
 #include "plugin/build_stamp.hpp"

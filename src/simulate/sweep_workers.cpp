@@ -11,7 +11,7 @@
 #include <mutex>
 #include <vector>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "plugin/exit_guard.hpp"
 
 namespace tchat {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/file_commands.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/sample_orbits.hpp"
 #include "files/solution_file.hpp"
 #include "support/temporary_folder.hpp"

@@ -8,7 +8,7 @@
 
 #include "../plugin/plugin_folder.hpp"
 #include "app/problem_commands.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "hand_differentiated.hpp"
 #include "linear_oscillator.hpp"
 #include "model/checked_function.hpp"

@@ -1,4 +1,3 @@
-#include "base/number.hpp"
 #include "base/words.hpp"
 
 #include <catch2/catch.hpp>

@@ -3,7 +3,7 @@
 #include <sstream>
 #include <thread>
 
-#include "base/progress_line.hpp"
+#include "base/messages.hpp"
 
 using namespace tchat;
 

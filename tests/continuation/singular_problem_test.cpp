@@ -1,7 +1,7 @@
 // Problems that leave a direction undetermined are refused with its name.
 #include <catch2/catch.hpp>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "run/first_correction.hpp"
 #include "support/branch_fixture.hpp"
 #include "support/linear_oscillator.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/file_size_limit.hpp"
 #include "support/temporary_folder.hpp"
 

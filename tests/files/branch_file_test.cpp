@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/sample_solutions.hpp"
 #include "files/solution_file_reader.hpp"
 #include "support/temporary_folder.hpp"

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/dat_file.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -1,7 +1,7 @@
 // Labels as lines in physical time, and how they are drawn.
 #include <catch2/catch.hpp>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/orbit_trace.hpp"
 #include "model/parameter_vector.hpp"
 #include "support/temporary_folder.hpp"

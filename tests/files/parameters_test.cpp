@@ -1,7 +1,7 @@
 // Names and values of parameters that constants and the command line give.
 #include <catch2/catch.hpp>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/dat_file.hpp"
 #include "plugin/problem_setup.hpp"
 #include "run/solver_settings.hpp"

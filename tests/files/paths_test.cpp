@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/run_files.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -8,7 +8,7 @@
 #include <functional>
 #include <random>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace tchat;

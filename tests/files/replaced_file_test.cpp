@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/file_size_limit.hpp"
 #include "support/temporary_folder.hpp"
 

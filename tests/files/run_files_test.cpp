@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/diagnostics_file.hpp"
 #include "files/file_size_limit.hpp"
 #include "files/sample_orbits.hpp"

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/sample_solutions.hpp"
 #include "files/solution_file_reader.hpp"
 #include "support/temporary_folder.hpp"

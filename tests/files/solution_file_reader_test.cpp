@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/sample_solutions.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/sample_orbits.hpp"
 #include "support/temporary_folder.hpp"
 

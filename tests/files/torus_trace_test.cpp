@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/orbit_trace.hpp"
 #include "model/parameter_vector.hpp"
 #include "settings/problem_type.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 
 /// The entry that libFuzzer (and replay.cpp) calls with one text after the other.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/solution_file.hpp"
 #include "orbit/orbit.hpp"
 #include "run/orbit_start.hpp"

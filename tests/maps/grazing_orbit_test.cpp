@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "maps/grazing_problems.hpp"
 #include "motion/orbit_flow.hpp"
 #include "orbit/ring_system.hpp"

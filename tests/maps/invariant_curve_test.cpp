@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "maps/invariant_curve.hpp"
 
 using namespace tchat;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "maps/simulated_torus.hpp"
 #include "support/test_system.hpp"
 

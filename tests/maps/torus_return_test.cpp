@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "fvdp_torus.hpp"
 #include "maps/torus_return.hpp"
 #include "motion/orbit_flow.hpp"

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "lyapunov_problems.hpp"
 #include "support/linear_oscillator.hpp"
 

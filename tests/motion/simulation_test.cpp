@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "../hybrid/linear_oscillator.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "motion/orbit_flow.hpp"
 #include "support/van_der_pol.hpp"
 

@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "orbit/periodic_orbit_system.hpp"
 #include "support/test_system.hpp"
 

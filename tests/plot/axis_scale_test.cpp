@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 
 using namespace tchat;
 

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "plot/branch_quantity.hpp"
 #include "plot/figure.hpp"
 #include "plot/layout.hpp"

@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "plot/branch_figure.hpp"
 #include "plot/column_expression.hpp"
 

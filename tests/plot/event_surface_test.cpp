@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "support/linear_oscillator.hpp"
 
 using namespace tchat;

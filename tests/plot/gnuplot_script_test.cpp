@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "plot/figure.hpp"
 
 using namespace tchat;

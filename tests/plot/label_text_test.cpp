@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 
 using namespace tchat;
 

@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "files/orbit_trace.hpp"
 #include "plot/multiplier_figure.hpp"
 #include "support/temporary_folder.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "plot/branch_figure.hpp"
 #include "plot/page_branch.hpp"
 #include "plot/page_figure.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "plot/figure.hpp"
 #include "plot/sweep_columns.hpp"
 #include "support/temporary_folder.hpp"

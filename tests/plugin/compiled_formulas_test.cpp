@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "../plugin/plugin_folder.hpp"
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "model/derivative_check.hpp"
 #include "plugin/problem_library.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin_folder.hpp"
 

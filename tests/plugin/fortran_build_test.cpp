@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "fortran_sources.hpp"
 #include "plugin/problem_library.hpp"
 #include "plugin_folder.hpp"

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "fortran_sources.hpp"
 #include "model/derivative_check.hpp"
 #include "plugin/exit_guard.hpp"

@@ -1,7 +1,7 @@
 // What is wrong in a file of formulas is told with line, column and cure.
 #include <catch2/catch.hpp>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "plugin/cpp_writer.hpp"
 
 using namespace tchat;

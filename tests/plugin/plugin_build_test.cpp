@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "plugin/build_stamp.hpp"
 #include "plugin/problem_library.hpp"
 #include "plugin_folder.hpp"

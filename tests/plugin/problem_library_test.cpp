@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "model/function_values.hpp"
 #include "model/parameter_vector.hpp"
 #include "plugin_folder.hpp"

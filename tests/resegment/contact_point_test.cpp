@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "support/mems_oscillator.hpp"
 
 using namespace tchat;

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "resegment/signature_match.hpp"
 #include "settings/constants_file.hpp"
 #include "support/mems_oscillator.hpp"

@@ -2,7 +2,7 @@
 // normal form.
 #include <catch2/catch.hpp>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "continuation/path_follower.hpp"
 #include "run/branch_setup.hpp"
 #include "run/hopf_switch.hpp"

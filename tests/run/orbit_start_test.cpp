@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "run/orbit_start.hpp"
 #include "support/sampled_orbit.hpp"
 

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "settings/constants_file.hpp"
 #include "settings/constants_writer.hpp"
 #include "settings/sample_files.hpp"

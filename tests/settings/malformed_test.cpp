@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "settings/constants_file.hpp"
 #include "settings/sample_files.hpp"
 #include "settings/settings_check.hpp"

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "settings/constants_file.hpp"
 #include "settings/constants_writer.hpp"
 #include "settings/sample_files.hpp"

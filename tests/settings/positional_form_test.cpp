@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "settings/constants_file.hpp"
 #include "settings/sample_files.hpp"
 #include "settings/settings_check.hpp"

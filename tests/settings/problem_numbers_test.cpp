@@ -1,7 +1,7 @@
 // What the numbers IPS and ISW say, compared with the documented list (src/docs/files.md) and AUTO-07p's manual.
 #include <catch2/catch.hpp>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "settings/problem_type.hpp"
 #include "support/temporary_folder.hpp"
 

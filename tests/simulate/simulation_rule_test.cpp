@@ -1,7 +1,7 @@
 // What a simulation watches and where it starts, by the command line and the constants.
 #include <catch2/catch.hpp>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "simulate/simulation_start.hpp"
 #include "support/test_system.hpp"
 

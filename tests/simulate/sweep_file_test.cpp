@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/user_error.hpp"
+#include "base/messages.hpp"
 #include "simulate/sample_record.hpp"
 #include "support/temporary_folder.hpp"
 
