@@ -2,7 +2,9 @@
 
 - a room of src includes itself, the rooms before it in the list src/rooms.txt, and nothing after it;
 - every folder of src that has sources is in that list;
-- IPS and ISW are compared with numbers by their owner alone, the room kinds;
+- no room has more lines of C++ than its budget in that list;
+- no source of src has a name that ends in _test, and there are at most 450 of them;
+- IPS and ISW are compared with numbers by their owners alone, the room kinds and the table settings/problem_type;
 - what kind of solution something is, nobody asks but its owner, the room kinds: no questions by name (has_ring,
   is_torus, is_point), no comparison of families, no cast to a class of equations, conditions or problem types.
 
@@ -14,6 +16,7 @@ import sys
 import tempfile
 
 OWNER = "kinds"
+TABLE = os.path.join("settings", "problem_type.")
 NOT_ROOMS = ("cmake", "docs")  # templates and examples of the pages
 
 
@@ -25,9 +28,34 @@ def rooms(source):
 def sources(source):
     for folder, _, names in os.walk(source):
         for name in sorted(names):
-            if name.endswith((".cpp", ".hpp", ".h", ".in")):
+            if name.endswith((".cpp", ".hpp", ".h", ".inc", ".in")):
                 path = os.path.join(folder, name)
                 yield os.path.relpath(path, source), open(path, encoding="utf-8").read()
+
+
+def over_budget(source):
+    """Rooms whose sources have more lines than the column of budgets allows."""
+    budgets = {}
+    for line in open(os.path.join(source, "rooms.txt"), encoding="utf-8"):
+        cells = [cell.strip() for cell in line.split("|")]
+        if not line.startswith("#") and len(cells) > 5:
+            budgets[cells[0]] = int(cells[4])
+    lines = dict.fromkeys(budgets, 0)
+    for path, text in sources(source):
+        room = path.split(os.sep)[0]
+        if room in lines and not path.endswith(".in"):
+            lines[room] += len(text.splitlines())
+    return [f"room {room} has {lines[room]} lines of C++, its budget in rooms.txt is {budgets[room]}: shorten it, or "
+            "raise the budget in a commit of its own that says what users get for it"
+            for room in budgets if lines[room] > budgets[room]]
+
+
+def names_and_count(source, most=450):
+    paths = [path for path, _ in sources(source) if path.split(os.sep)[0] not in NOT_ROOMS and not path.endswith(".in")]
+    faults = [f"{path} is named like a test" for path in paths if os.path.splitext(path)[0].endswith("_test")]
+    if len(paths) > most:
+        faults.append(f"src has {len(paths)} files of C++, more than {most}")
+    return faults
 
 
 def includes_up(source):
@@ -50,7 +78,7 @@ def includes_up(source):
 def comparisons(source):
     number = re.compile(r"\b(problem_type|branch_mode)(\(\))?\s*(==|!=|<=?|>=?)\s*-?\d"
                         r"|-?\d+\s*(==|!=)\s*[\w.]*\b(problem_type|branch_mode)\b")
-    return [f"{path}: {line.strip()}" for path, text in sources(source) if path.split(os.sep)[0] != OWNER
+    return [f"{path}: {line.strip()}" for path, text in sources(source) if path.split(os.sep)[0] != OWNER and not path.startswith(TABLE)
             for line in text.splitlines() if number.search(line)]
 
 
@@ -69,7 +97,7 @@ def check_that_faults_are_found():
         for room in ("orbit", "base", "attic"):
             os.mkdir(os.path.join(folder, room))
         with open(os.path.join(folder, "rooms.txt"), "w") as file:
-            file.write("# The rooms.\nbase | core\ncontract | headers\norbit  | core\n")
+            file.write("# The rooms.\nbase | core | texts | quick | 2 | words\ncontract | headers\norbit  | core | - | - | 9 | orbits\n")
         with open(os.path.join(folder, "base", "words.cpp"), "w") as file:
             file.write('#include "orbit/orbit.hpp"\nbool f(int problem_type) { return problem_type == 180; }\n')
         with open(os.path.join(folder, "orbit", "orbit.hpp"), "w") as file:
@@ -79,6 +107,12 @@ def check_that_faults_are_found():
             file.write("int chairs = 1;\n")
         assert "attic/chair.cpp is in no room of rooms.txt" in includes_up(folder)
         assert len(comparisons(folder)) == 1
+        assert over_budget(folder) == []
+        with open(os.path.join(folder, "base", "words_test.cpp"), "w") as file:
+            file.write("int words = 1;\n")
+        assert len(over_budget(folder)) == 1 and "base has 3 lines" in over_budget(folder)[0]
+        assert names_and_count(folder, most=4) == [os.path.join("base", "words_test.cpp") + " is named like a test"]
+        assert len(names_and_count(folder, most=3)) == 2
         with open(os.path.join(folder, "orbit", "orbit.cpp"), "w") as file:
             file.write("bool g(int n) { return is_torus(n); }\n"
                        "auto& h(const DefiningSystem& x) { return static_cast<const TorusSystem&>(x); }\n")
@@ -86,6 +120,7 @@ def check_that_faults_are_found():
 
 
 check_that_faults_are_found()
-found = includes_up(sys.argv[1]) + comparisons(sys.argv[1]) + questions_about_families(sys.argv[1])
+found = [fault for check in (includes_up, over_budget, names_and_count, comparisons, questions_about_families)
+         for fault in check(sys.argv[1])]
 print("\n".join(found))
 sys.exit(1 if found else 0)
