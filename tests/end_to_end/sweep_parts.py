@@ -2,6 +2,8 @@
 
 usage: sweep_parts.py TCHAT LINOSC_SOURCE WHAT      executable, linosc.cpp; what: diagram, following or basin
 
+With TCHAT_ALL_TESTS in the environment (scripts/test --all) the grids are several times finer.
+
 The reference is one worker, undisturbed. Compared with it are: two workers; seven parts, made by GNU parallel where it is
 installed, and gathered; a sweep killed by SIGKILL several times, once with its journal cut within a line, once
 interrupted, that every time goes on behind what was there. Journals of another command or another plugin are refused, not
@@ -18,12 +20,16 @@ import tempfile
 import time
 
 TCHAT, SOURCE, WHAT = sys.argv[1:4]
+IS_FULL = bool(os.environ.get("TCHAT_ALL_TESTS"))
+VALUES = {"diagram": (100, 1000), "following": (30, 150), "basin": (12, 25)}[WHAT][IS_FULL]
 OVER = {
-    "diagram": ["--over", "alpha=2:6:1000", "PAR(zeta)=0.3", "--section", "1", "--penetration", "1"],
-    "following": ["--over", "alpha=1.9:2.6:150", "--over", "r=0.7:0.8:2", "PAR(omega)=1.8901", "--follow", "both",
+    "diagram": ["--over", f"alpha=2:6:{VALUES}", "PAR(zeta)=0.3", "--section", "1", "--penetration", "1"],
+    "following": ["--over", f"alpha=1.9:2.6:{VALUES}", "--over", "r=0.7:0.8:2", "PAR(omega)=1.8901", "--follow", "both",
                   "--max"],
-    "basin": ["--over", "x1=-1:1:25", "--over", "x2=-5:5:20", "PAR(alpha)=2.2", "PAR(omega)=1.8901", "PAR(zeta)=0.1"],
+    "basin": ["--over", f"x1=-1:1:{VALUES}", "--over", "x2=-5:5:20", "PAR(alpha)=2.2", "PAR(omega)=1.8901",
+              "PAR(zeta)=0.1"],
 }[WHAT]
+LINES = 30 if IS_FULL else 8  # of the journal between two kills
 FAULTS = []
 
 
@@ -78,12 +84,12 @@ def workers_and_interruptions():
 
     kills = 0
     for sent in [signal.SIGKILL, signal.SIGINT, signal.SIGKILL, signal.SIGKILL]:
-        kills += kill_when("killed", 30, sent)
+        kills += kill_when("killed", LINES, sent)
     check(kills >= 2, f"the sweep was killed {kills} times only: it is too short for this test")
     journal = read("killed.sweep.journal")
     with open("killed.sweep.journal", "wb") as file:
         file.write(journal[:-20])  # as where the disk was full
-    other = [word.replace(":1000", ":999").replace(":150", ":149").replace(":25", ":24") for word in OVER]
+    other = [word.replace(f":{VALUES}", f":{VALUES - 1}") for word in OVER]
     said = run(*other, "-o", "killed", status=2)
     check("of another sweep" in said and "over is" in said, f"a journal of another command: {said}")
     said = run(*OVER, "-o", "killed", "-j", "2")
@@ -121,7 +127,7 @@ def parts(reference):
 
 
 def another_plugin():
-    kill_when("changed", 30, signal.SIGKILL)
+    kill_when("changed", LINES, signal.SIGKILL)
     with open("linosc.cpp") as file:
         text = file.read()
     with open("linosc.cpp", "w") as file:
