@@ -9,9 +9,9 @@
 #include "../plugin/plugin_folder.hpp"
 #include "app/problem_commands.hpp"
 #include "base/messages.hpp"
-#include "hand_differentiated.hpp"
-#include "linear_oscillator.hpp"
 #include "model/checked_function.hpp"
+#include "model/hand_differentiated.hpp"
+#include "model/linear_oscillator.hpp"
 
 using namespace tchat;
 using Catch::Matchers::Contains;

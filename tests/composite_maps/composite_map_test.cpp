@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <memory>
 
-#include "composite_map_problems.hpp"
+#include "grazing_problems.hpp"
 #include "maps/composite_map.hpp"
 #include "maps/smooth_return.hpp"
 #include "motion/hybrid_simulation.hpp"

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "composite_map_problems.hpp"
+#include "grazing_problems.hpp"
 #include "motion/orbit_flow.hpp"
 
 namespace tchat::test {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "composite_map_problems.hpp"
+#include "grazing_problems.hpp"
 #include "maps/smooth_return.hpp"
 #include "maps/suspended_system.hpp"
 #include "motion/orbit_flow.hpp"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "../hybrid/linear_oscillator.hpp"
+#include "../model/linear_oscillator.hpp"
 #include "simulated_problems.hpp"
 
 using namespace tchat;

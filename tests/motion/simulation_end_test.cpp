@@ -1,7 +1,7 @@
 // What a simulation settles on: chattering, sticking, rest, periodic orbits of any period.
 #include <catch2/catch.hpp>
 
-#include "../hybrid/linear_oscillator.hpp"
+#include "../model/linear_oscillator.hpp"
 #include "motion/found_orbit.hpp"
 #include "motion/simulation_run.hpp"
 #include "simulated_problems.hpp"

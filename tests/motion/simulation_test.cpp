@@ -5,7 +5,7 @@
 #include <complex>
 #include <vector>
 
-#include "../hybrid/linear_oscillator.hpp"
+#include "../model/linear_oscillator.hpp"
 #include "base/messages.hpp"
 #include "motion/orbit_flow.hpp"
 #include "support/van_der_pol.hpp"

@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "../hybrid/linear_oscillator.hpp"
+#include "../model/linear_oscillator.hpp"
 
 namespace tchat::test {
 
