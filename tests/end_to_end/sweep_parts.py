@@ -21,7 +21,7 @@ import time
 
 TCHAT, SOURCE, WHAT = sys.argv[1:4]
 IS_FULL = bool(os.environ.get("TCHAT_ALL_TESTS"))
-VALUES = {"diagram": (1000, 1000), "following": (30, 150), "basin": (12, 25)}[WHAT][IS_FULL]
+VALUES = {"diagram": (250, 1000), "following": (30, 150), "basin": (12, 25)}[WHAT][IS_FULL]
 OVER = {
     "diagram": ["--over", f"alpha=2:6:{VALUES}", "PAR(zeta)=0.3", "--section", "1", "--penetration", "1"],
     "following": ["--over", f"alpha=1.9:2.6:{VALUES}", "--over", "r=0.7:0.8:2", "PAR(omega)=1.8901", "--follow", "both",
@@ -29,7 +29,7 @@ OVER = {
     "basin": ["--over", f"x1=-1:1:{VALUES}", "--over", "x2=-5:5:20", "PAR(alpha)=2.2", "PAR(omega)=1.8901",
               "PAR(zeta)=0.1"],
 }[WHAT]
-LINES = 30 if IS_FULL or WHAT == "diagram" else 8  # of the journal between two kills
+LINES = 30 if IS_FULL else 25  # of the journal between two kills: the first 20 are its heading
 FAULTS = []
 
 
