@@ -42,6 +42,56 @@ Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& matrix) {
   return result;
 }
 
+Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix) {
+  const int n = size_of(matrix.rows());
+  if (n == 0) return {};
+  if (!matrix.allFinite()) return Eigen::VectorXd::Constant(n, not_a_number);
+  Eigen::MatrixXd a = matrix;
+  Eigen::VectorXd values(n);
+  std::vector<double> work = workspace(n);
+  const int work_size = static_cast<int>(work.size());
+  int info = 0;
+  dsyev_("N", "L", &n, a.data(), &n, values.data(), work.data(), &work_size, &info, 1, 1);
+  return info == 0 ? values : Eigen::VectorXd::Constant(n, not_a_number);
+}
+
+namespace {
+
+/// Vectors as LAPACK packs them: those of a pair are real and imaginary part of the first one in two columns.
+Eigen::MatrixXcd unpacked(const Eigen::MatrixXd& packed, const Eigen::VectorXd& imag) {
+  Eigen::MatrixXcd vectors(packed.rows(), packed.cols());
+  for (Eigen::Index j = 0; j < packed.cols(); ++j) {
+    if (imag(j) == 0.0 || j + 1 == packed.cols()) {
+      vectors.col(j) = packed.col(j);
+      continue;
+    }
+    vectors.col(j).real() = packed.col(j);
+    vectors.col(j).imag() = packed.col(j + 1);
+    vectors.col(j + 1) = vectors.col(j).conjugate();
+    ++j;
+  }
+  return vectors;
+}
+
+}  // namespace
+
+std::optional<Eigenvectors> eigenvectors(const Eigen::MatrixXd& matrix) {
+  const int n = size_of(matrix.rows());
+  if (n == 0 || !matrix.allFinite()) return std::nullopt;
+  Eigen::MatrixXd a = matrix, left(n, n), right(n, n);
+  Eigen::VectorXd real(n), imag(n);
+  std::vector<double> work = workspace(n);
+  const int work_size = static_cast<int>(work.size());
+  int info = 0;
+  dgeev_("V", "V", &n, a.data(), &n, real.data(), imag.data(), left.data(), &n, right.data(), &n, work.data(),
+         &work_size, &info, 1, 1);
+  if (info != 0) return std::nullopt;
+  Eigenvectors found{Eigen::VectorXcd(n), unpacked(right, imag), unpacked(left, imag).conjugate()};
+  found.values.real() = real;
+  found.values.imag() = imag;
+  return found;
+}
+
 Eigen::VectorXcd solve_shifted(const Eigen::MatrixXd& matrix, std::complex<double> shift,
                                const Eigen::VectorXcd& right) {
   const Eigen::Index n = matrix.rows();
@@ -79,6 +129,19 @@ int PivotedLu::parity() const {
   return sign;
 }
 
+bool PivotedLu::is_regular() const {
+  const Eigen::VectorXd sizes = pivots().cwiseAbs();
+  const double rounding = std::numeric_limits<double>::epsilon() * static_cast<double>(sizes.size());
+  return sizes.size() == 0 || sizes.minCoeff() > rounding * sizes.maxCoeff();
+}
+
+Eigen::VectorXi PivotedLu::order() const {
+  Eigen::VectorXi rows(pivots_.size());
+  for (int k = 0; k < rows.size(); ++k) rows(k) = k;
+  for (int k = 0; k < rows.size(); ++k) std::swap(rows(k), rows(pivots_(k) - 1));
+  return rows;
+}
+
 Eigen::MatrixXd PivotedLu::solve(const Eigen::MatrixXd& right) const {
   const int n = size_of(factors_.rows());
   const int right_sides = size_of(right.cols());
@@ -90,6 +153,26 @@ Eigen::MatrixXd PivotedLu::solve(const Eigen::MatrixXd& right) const {
 
 Eigen::MatrixXd solve(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right) {
   return PivotedLu(matrix).solve(right);
+}
+
+void ComplexLu::factorize(const Eigen::MatrixXcd& matrix) {
+  const int n = size_of(matrix.rows());
+  factors_ = matrix;
+  int info = 0;
+  if (n > 0) zgetrf_(&n, &n, factors_.data(), &n, pivots_.data(), &info);
+}
+
+void ComplexLu::solve_in_place(Eigen::VectorXcd& x) const {
+  const int n = size_of(x.size());
+  const int one = 1;
+  int info = 0;
+  if (n > 0) zgetrs_("N", &n, &one, factors_.data(), &n, pivots_.data(), x.data(), &n, &info, 1);
+}
+
+Eigen::VectorXcd solve_complex(const Eigen::MatrixXcd& matrix, const Eigen::VectorXcd& right) {
+  Eigen::VectorXcd x = right;
+  ComplexLu(matrix).solve_in_place(x);
+  return x;
 }
 
 Eigen::MatrixXd solve_with_complete_pivoting(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right) {
@@ -176,6 +259,35 @@ double least_singular_value(const Eigen::MatrixXcd& matrix) {
   zgesvd_("N", "N", &rows, &columns, a.data(), &rows, singular.data(), nullptr, &one, nullptr, &one, work.data(),
           &work_size, real_work.data(), &info, 1, 1);
   return info == 0 ? singular(shorter - 1) : not_a_number;
+}
+
+SingularVectors singular_vectors(const Eigen::MatrixXd& matrix) {
+  const int n = size_of(matrix.rows());
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Constant(n, n, not_a_number);
+  SingularVectors found{Eigen::VectorXd::Constant(n, not_a_number), none, none};
+  if (n == 0 || !matrix.allFinite()) return found;
+  Eigen::MatrixXd a = matrix, transposed(n, n);
+  std::vector<double> work = workspace(n);
+  const int work_size = static_cast<int>(work.size());
+  int info = 0;
+  dgesvd_("A", "A", &n, &n, a.data(), &n, found.sizes.data(), found.left.data(), &n, transposed.data(), &n, work.data(),
+          &work_size, &info, 1, 1);
+  if (info != 0) return {none.diagonal(), none, none};
+  found.right = transposed.transpose();
+  return found;
+}
+
+Orthonormalisation::Orthonormalisation(Eigen::Index rows, Eigen::Index columns)
+    : lengths_(columns), factors_(columns), work_(64 * (rows + columns)) {}
+
+void Orthonormalisation::apply(Eigen::MatrixXd& v) {
+  const int rows = size_of(v.rows());
+  const int columns = size_of(v.cols());
+  const int work_size = size_of(work_.size());
+  int info = 0;
+  dgeqrf_(&rows, &columns, v.data(), &rows, factors_.data(), work_.data(), &work_size, &info);
+  lengths_ = v.diagonal().cwiseAbs();
+  dorgqr_(&rows, &columns, &columns, v.data(), &rows, factors_.data(), work_.data(), &work_size, &info);
 }
 
 }  // namespace tchat

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <complex>
+#include <optional>
 
 namespace tchat {
 
@@ -51,6 +52,18 @@ void reflect(const Vector& w, Matrix&& matrix) {
 /// Of a square matrix, in no order.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& matrix);
 
+/// The same of a symmetric matrix, whose lower triangle is read, in ascending order.
+Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix);
+
+/// The eigenvectors of a square matrix as columns: matrix right = right diag(values), left^T matrix = diag(values)
+/// left^T.
+struct Eigenvectors {
+  Eigen::VectorXcd values;
+  Eigen::MatrixXcd right, left;
+};
+/// None where the matrix is not finite or the iteration fails.
+std::optional<Eigenvectors> eigenvectors(const Eigen::MatrixXd& matrix);
+
 /// The eigenvector of unit length that belongs to (about) this eigenvalue, by inverse iteration.
 Eigen::VectorXcd eigenvector(const Eigen::MatrixXd& matrix, std::complex<double> eigenvalue);
 
@@ -68,6 +81,11 @@ class PivotedLu {
   /// The determinant is the product of these and of the sign of the row exchanges.
   Eigen::VectorXd pivots() const { return factors_.diagonal(); }
   int parity() const;
+  double determinant() const { return parity() * pivots().prod(); }
+  /// Whether no pivot is rounding against the largest.
+  bool is_regular() const;
+  /// Row k of the factors is row order()(k) of the matrix.
+  Eigen::VectorXi order() const;
 
  private:
   Eigen::MatrixXd factors_;
@@ -76,6 +94,24 @@ class PivotedLu {
 
 /// PivotedLu(matrix).solve(right).
 Eigen::MatrixXd solve(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right);
+
+/// The same of complex numbers, for one right-hand side after the other. Allocates nothing after construction.
+class ComplexLu {
+ public:
+  explicit ComplexLu(Eigen::Index n) : factors_(n, n), pivots_(n) {}
+  explicit ComplexLu(const Eigen::MatrixXcd& matrix) : ComplexLu(matrix.rows()) { factorize(matrix); }
+
+  void factorize(const Eigen::MatrixXcd& matrix);
+  /// x, the right-hand side, becomes the solution; not finite where the matrix is singular.
+  void solve_in_place(Eigen::VectorXcd& x) const;
+
+ private:
+  Eigen::MatrixXcd factors_;
+  Eigen::VectorXi pivots_;
+};
+
+/// ComplexLu(matrix), of one right-hand side.
+Eigen::VectorXcd solve_complex(const Eigen::MatrixXcd& matrix, const Eigen::VectorXcd& right);
 
 /// The same with complete pivoting: finite, where the matrix is singular too. Unknowns of pivots that are rounding are
 /// 0.
@@ -95,5 +131,26 @@ int triangularise(Eigen::MatrixXd& matrix, Eigen::Index columns);
 double distance_to_null_space(Eigen::MatrixXd& columns);
 
 double least_singular_value(const Eigen::MatrixXcd& matrix);
+
+/// Of a square matrix = left diag(sizes) right^T, sizes descending; not a number where it is not finite.
+struct SingularVectors {
+  Eigen::VectorXd sizes;
+  Eigen::MatrixXd left, right;
+};
+SingularVectors singular_vectors(const Eigen::MatrixXd& matrix);
+
+/// Makes the columns of n x K matrices, K <= n, orthonormal, V = Q R. Allocates nothing after construction.
+class Orthonormalisation {
+ public:
+  Orthonormalisation(Eigen::Index rows, Eigen::Index columns);
+
+  /// V becomes Q.
+  void apply(Eigen::MatrixXd& v);
+  /// |R_jj| of the last one.
+  const Eigen::VectorXd& lengths() const { return lengths_; }
+
+ private:
+  Eigen::VectorXd lengths_, factors_, work_;
+};
 
 }  // namespace tchat

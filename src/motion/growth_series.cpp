@@ -257,11 +257,7 @@ constexpr double vanishing = 32 * std::numeric_limits<double>::epsilon();
 }  // namespace
 
 OrthonormalFrame::OrthonormalFrame(Index n, Index columns)
-    : v_(n, columns),
-      qr_(n, columns),
-      growth_(VectorXd::Zero(columns)),
-      taken_(VectorXd::Zero(columns)),
-      workspace_(n) {
+    : v_(n, columns), qr_(n, columns), growth_(VectorXd::Zero(columns)), taken_(VectorXd::Zero(columns)) {
   for (Index j = 0; j < columns; ++j)
     for (Index i = 0; i < n; ++i)
       v_(i, j) =
@@ -272,17 +268,15 @@ OrthonormalFrame::OrthonormalFrame(Index n, Index columns)
 
 void OrthonormalFrame::orthonormalise(bool may_vanish) {
   const double size = v_.cwiseAbs().maxCoeff();
-  qr_.compute(v_);
+  qr_.apply(v_);
   for (Index j = 0; j < v_.cols(); ++j) {
-    const double r = std::abs(qr_.matrixQR()(j, j));
+    const double r = qr_.lengths()(j);
     const bool vanishes = r <= vanishing * size;
     if (vanishes && may_vanish)
       growth_(j) = -std::numeric_limits<double>::infinity();
     else
       growth_(j) += std::log(vanishes ? vanishing * size : r);
   }
-  v_.setIdentity();
-  qr_.householderQ().applyThisOnTheLeft(v_, workspace_);
 }
 
 const VectorXd& OrthonormalFrame::take_growth() {

@@ -3,11 +3,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/QR>
 #include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "linear/dense_matrix.hpp"
 
 namespace tchat {
 
@@ -124,8 +125,8 @@ class OrthonormalFrame {
 
  private:
   Eigen::MatrixXd v_;
-  Eigen::HouseholderQR<Eigen::MatrixXd> qr_;
-  Eigen::VectorXd growth_, taken_, workspace_;
+  Orthonormalisation qr_;
+  Eigen::VectorXd growth_, taken_;
 };
 
 /// For maps: one matrix after the other, each one piece of the motion.

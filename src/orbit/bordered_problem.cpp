@@ -1,8 +1,6 @@
 #include "orbit/bordered_problem.hpp"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -12,6 +10,7 @@
 #include <utility>
 
 #include "linear/array_kernel.hpp"
+#include "linear/dense_matrix.hpp"
 #include "orbit/monitor.hpp"
 
 namespace tchat {
@@ -35,7 +34,7 @@ auto vector_product(const Rows& rows) {
     for (Eigen::Index j = 0; j < rows.cols(); ++j) {
       Eigen::MatrixXd others(rows.rows(), rows.rows());
       others << rows.leftCols(j), rows.rightCols(rows.cols() - 1 - j);
-      result(j) = (j % 2 == 0 ? 1.0 : -1.0) * others.determinant();
+      result(j) = (j % 2 == 0 ? 1.0 : -1.0) * PivotedLu(others).determinant();
     }
   return result;
 }
@@ -164,11 +163,11 @@ CondensedSystem::Singularity BorderedProblem::singularity(const OrbitVector& row
   for (int k = 0; k < conditions(); ++k)
     rows.row(1 + k) = slopes_.row(k) / size_on_null_vectors(condition_->gradient(k));
   if (!rows.allFinite()) return result;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rows, Eigen::ComputeFullV);
-  const double reciprocal = svd.singularValues().minCoeff() / svd.singularValues().maxCoeff();
+  const SingularVectors vectors = singular_vectors(rows);
+  const double reciprocal = vectors.sizes.minCoeff() / vectors.sizes.maxCoeff();
   if (!(reciprocal < result.reciprocal_condition)) return result;
   OrbitVector direction = condensed_.make_vector();
-  combine_null_vectors(svd.matrixV().rightCols<1>(), direction);
+  combine_null_vectors(vectors.right.rightCols<1>(), direction);
   return {reciprocal, direction};
 }
 
@@ -229,7 +228,7 @@ BorderedProblem::Numbers BorderedProblem::dual_slope(int k) const {
   if (conditions() > 2) {
     Eigen::MatrixXd all(conditions() + 1, conditions() + 1);
     all << slopes_, along_.transpose();
-    return along_.squaredNorm() * all.partialPivLu().solve(Eigen::VectorXd::Unit(conditions() + 1, k));
+    return along_.squaredNorm() * tchat::solve(all, Eigen::VectorXd::Unit(conditions() + 1, k));
   }
   const Eigen::Vector3d a = along_;
   const Eigen::Vector3d other = slopes_.row(1 - k).transpose();

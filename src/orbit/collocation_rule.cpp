@@ -1,11 +1,11 @@
 #include "orbit/collocation_rule.hpp"
 
-#include <Eigen/LU>
 #include <boost/math/special_functions/legendre.hpp>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "linear/dense_matrix.hpp"
 #include "linear/memory.hpp"
 
 namespace tchat {
@@ -91,12 +91,11 @@ CollocationRule::CollocationRule(int points)
     value.row(j) = values.transpose();
     slope.row(j) = slopes.transpose();
   }
-  const Eigen::PermutationMatrix<Eigen::Dynamic> order =
-      Eigen::PartialPivLU<Eigen::MatrixXd>(slope.rightCols(points)).permutationP();
-  gauss = order * gauss;
-  weights = order * weights;
-  value = order * value;
-  slope = order * slope;
+  const Eigen::VectorXi order = PivotedLu(slope.rightCols(points)).order();
+  gauss = gauss(order).eval();
+  weights = weights(order).eval();
+  value = value(order, Eigen::all).eval();
+  slope = slope(order, Eigen::all).eval();
 
   for (const int end : {0, 1}) {
     basis(end, values.data(), slopes.data());

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -218,7 +217,7 @@ bool HopfPair::begin_at_double_zero() {
   const Eigen::VectorXcd values = eigenvalues(jacobian_);
   if (values.size() - std::count_if(values.begin(), values.end(), beyond) != 2) return false;
   const Eigen::MatrixXd square = jacobian_ * jacobian_;
-  plane_ = Eigen::JacobiSVD<Eigen::MatrixXd>(square, Eigen::ComputeFullV).matrixV().rightCols<2>();
+  plane_ = singular_vectors(square).right.rightCols<2>();
   pair_ = plane_.transpose() * jacobian_ * plane_;
   return started_ = true;
 }

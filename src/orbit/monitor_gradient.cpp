@@ -1,10 +1,10 @@
 #include "orbit/monitor_gradient.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "linear/dense_matrix.hpp"
 
 namespace tchat {
 
@@ -80,10 +80,11 @@ bool ReducedGradient::find_multipliers() {
   combination_ = Eigen::VectorXd::Unit(1 + held, 0);
   dependent_.resize(held, independent);
   if (held > 0) {
-    const Eigen::FullPivLU<Eigen::MatrixXd> of_held(derivatives_.bottomRightCorner(held, held));
-    if (!of_held.isInvertible()) return false;
+    const Eigen::MatrixXd by_held = derivatives_.bottomRightCorner(held, held);
+    const PivotedLu of_held(by_held);
+    if (!of_held.is_regular()) return false;
     dependent_ = -of_held.solve(derivatives_.bottomLeftCorner(held, independent));
-    combination_.tail(held) = -of_held.inverse().transpose() * derivatives_.row(0).tail(held).transpose();
+    combination_.tail(held) = -solve(by_held.transpose(), derivatives_.row(0).tail(held).transpose());
   }
   values_ = (combination_.transpose() * derivatives_.leftCols(independent)).transpose();
   sizes_ = (combination_.cwiseAbs().transpose() * terms_.leftCols(independent)).transpose();
@@ -166,8 +167,7 @@ ReducedGradient::Nature ReducedGradient::nature(const Orbit& x, const std::vecto
   const Eigen::MatrixXd of_terms = units.asDiagonal() * terms * units.asDiagonal();
   const double uncertainty =
       least + (scaled - scaled.transpose()).cwiseAbs().maxCoeff() + noise * of_terms.cwiseAbs().maxCoeff();
-  const Eigen::VectorXd eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (scaled + scaled.transpose())).eigenvalues();
+  const Eigen::VectorXd eigenvalues = symmetric_eigenvalues(0.5 * (scaled + scaled.transpose()));
   if (!eigenvalues.allFinite() || !(eigenvalues.cwiseAbs().minCoeff() > uncertainty)) return Nature::unknown;
   if (eigenvalues.minCoeff() > 0.0) return Nature::minimum;
   return eigenvalues.maxCoeff() < 0.0 ? Nature::maximum : Nature::saddle;

@@ -1,10 +1,10 @@
 #include "stability/condensed_orbit.hpp"
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
+#include "linear/dense_matrix.hpp"
 #include "orbit/mesh_adaptation.hpp"
 
 namespace tchat {
@@ -147,7 +147,10 @@ Eigen::Matrix<Number, Eigen::Dynamic, 1> solve_bordered(const Eigen::Matrix<Numb
   matrix << a, column, row.transpose(), Number(0.0);
   Eigen::Matrix<Number, Eigen::Dynamic, 1> rights(n + 1);
   rights << right, Number(0.0);
-  return matrix.partialPivLu().solve(rights).eval().head(n);
+  if constexpr (std::is_same_v<Number, double>)
+    return solve(matrix, rights).col(0).head(n);
+  else
+    return solve_complex(matrix, rights).head(n);
 }
 
 }  // namespace
@@ -177,7 +180,7 @@ ShiftedOrbit::ComplexVector ShiftedOrbit::closing_rows(const ComplexVector& q) c
 ShiftedOrbit::ComplexVector ShiftedOrbit::solve(Complex mu, const ComplexVector& right) {
   ComplexVector v = solve_real(right);
   const Eigen::MatrixXcd matrix = Eigen::MatrixXcd::Identity(n_, n_) + (mu - shift_) * starts_;
-  const ComplexVector start = matrix.partialPivLu().solve(v.head(n_));
+  const ComplexVector start = solve_complex(matrix, v.head(n_));
   return v - (mu - shift_) * (closing_ * start);
 }
 
@@ -191,7 +194,7 @@ ShiftedOrbit::Vector ShiftedOrbit::solve_beside(double mu, const Vector& right, 
   matrix.bottomLeftCorner(1, n_) = q.transpose();
   Vector start(n_ + 1);
   start << v.head(n_), 0.0;
-  start = matrix.partialPivLu().solve(start);
+  start = tchat::solve(matrix, start);
   factor = start(n_);
   return v - factor * by_factor - (mu - shift_) * (closing_ * start.head(n_));
 }
@@ -218,12 +221,12 @@ ShiftedOrbit::ComplexVector ShiftedOrbit::solve_singular(Complex mu, const Compl
 std::optional<ShiftedOrbit::DoubleVectors> ShiftedOrbit::find_double(double mu) {
   const double distance = mu - shift_;
   const Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(n_, n_) + distance * starts_;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const SingularVectors vectors = singular_vectors(matrix);
   constexpr double singular = 1e-2;
-  const Vector& sizes = svd.singularValues();
+  const Vector& sizes = vectors.sizes;
   if (n_ < 2 || !(sizes(n_ - 1) < singular * sizes(n_ - 2))) return std::nullopt;
-  Vector q = svd.matrixV().col(n_ - 1);
-  Vector p = svd.matrixU().col(n_ - 1);
+  Vector q = vectors.right.col(n_ - 1);
+  Vector p = vectors.left.col(n_ - 1);
   Eigen::Index largest = 0;
   q.cwiseAbs().maxCoeff(&largest);
   if (q(largest) < 0.0) q = -q;

@@ -1,6 +1,5 @@
 #include "stability/return_map_forms.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,17 +24,12 @@ double error_of_sums(const HybridSystem& system) {
 }
 
 std::optional<CriticalStart> critical_start(const Eigen::MatrixXd& k, double mu_0, std::complex<double> wanted) {
-  const Eigen::EigenSolver<Eigen::MatrixXd> right(k), left(k.transpose());
-  if (right.info() != Eigen::Success || left.info() != Eigen::Success) return std::nullopt;
-  const auto nearest = [&](const Eigen::VectorXcd& values) {
-    Eigen::Index at = 0;
-    (values.array() - 1.0 / (mu_0 - wanted)).abs().minCoeff(&at);
-    return at;
-  };
-  const Eigen::Index at = nearest(right.eigenvalues());
+  const std::optional<Eigenvectors> all = eigenvectors(k);
+  if (!all) return std::nullopt;
+  Eigen::Index at = 0;
+  (all->values.array() - 1.0 / (mu_0 - wanted)).abs().minCoeff(&at);
   constexpr double near = 1e-2;
-  CriticalStart found{mu_0 - 1.0 / right.eigenvalues()(at), right.eigenvectors().col(at),
-                      left.eigenvectors().col(nearest(left.eigenvalues()))};
+  CriticalStart found{mu_0 - 1.0 / all->values(at), all->right.col(at), all->left.col(at)};
   if (!(std::abs(found.multiplier - wanted) < near)) return std::nullopt;
   Eigen::Index largest = 0;
   found.right.cwiseAbs().maxCoeff(&largest);
@@ -112,7 +106,6 @@ ReturnMapForms::ReturnMapForms(const DefiningSystem& system, const OrbitShape& s
       closing_(map_.size(), n_),
       matrix_(n_, n_),
       factors_(n_),
-      start_(n_),
       change_(n_),
       f_(n_),
       fx_(n_, n_),
@@ -261,7 +254,7 @@ double ReturnMapForms::put_bordered(const Vector& column, const Vector& q, Vecto
   matrix.bottomLeftCorner(1, n_) = q.transpose();
   Vector start = Vector::Zero(n_ + 1);
   start.head(n_) = ends.head(n_);
-  start = matrix.partialPivLu().solve(start).eval();
+  start = tchat::solve(matrix, start);
   ends -= start(n_) * column + (1.0 - shift_) * (closing_ * start.head(n_));
   return start(n_);
 }
@@ -344,12 +337,10 @@ void ReturnMapForms::solve_twice(Complex mu) {
   for (std::size_t part = 1; part < 3; ++part) solve(squares_[part], solutions_[part]);
   matrix_ = distance * closing_.topRows(n_);
   matrix_.diagonal().array() += 1.0;
-  factors_.compute(matrix_);
-  start_.real() = solutions_[1].states.col(0);
-  start_.imag() = solutions_[2].states.col(0);
-  change_.noalias() = factors_.permutationP() * start_;  // step by step: solve() makes temporaries
-  factors_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(change_);
-  factors_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(change_);
+  factors_.factorize(matrix_);
+  change_.real() = solutions_[1].states.col(0);
+  change_.imag() = solutions_[2].states.col(0);
+  factors_.solve_in_place(change_);
   change_ *= -distance;
   f_ = change_.real();
   ends_.noalias() = closing_ * f_;

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <complex>
 #include <optional>
 #include <vector>
 
+#include "linear/dense_matrix.hpp"
 #include "linear/sparse_lu.hpp"
 #include "model/hybrid_system.hpp"
 #include "orbit/condensed_system.hpp"
@@ -172,14 +172,14 @@ class ReturnMapForms {
   const Orbit* x_ = nullptr;
   double shift_ = 0.0;  // mu_0
 
-  std::vector<double> values_;                     // of S
-  std::vector<double> condensed_rows_;             // m n
-  Vector rhs_, ends_, other_ends_;                 // as S
-  Eigen::MatrixXd closing_;                        // S(mu_0)^-1 E
-  Eigen::MatrixXcd matrix_;                        // n x n
-  Eigen::PartialPivLU<Eigen::MatrixXcd> factors_;  // of it
-  Eigen::VectorXcd start_, change_;                // n
-  Vector f_;                                       // n
+  std::vector<double> values_;          // of S
+  std::vector<double> condensed_rows_;  // m n
+  Vector rhs_, ends_, other_ends_;      // as S
+  Eigen::MatrixXd closing_;             // S(mu_0)^-1 E
+  Eigen::MatrixXcd matrix_;             // n x n
+  ComplexLu factors_;                   // of it
+  Eigen::VectorXcd change_;             // n
+  Vector f_;                            // n
   Eigen::MatrixXd fx_, fp_;
 
   // Real and imaginary parts, or the former alone:
