@@ -37,7 +37,8 @@ std::vector<std::size_t> number_columns(const PointSection& section, const Curve
 
 /// A Hopf bifurcation of periodic orbits is where they have shrunk.
 bool has_shrunk(const PointSection& section, const PointRow& row) {
-  return section.problem_type != equilibrium.number && basic_type(row.type) == static_cast<int>(PointType::hopf);
+  return family_of(section.problem_type).facts().headings.has_period &&
+         basic_type(row.type) == static_cast<int>(PointType::hopf);
 }
 
 /// The equilibrium in an orbit that has shrunk, which the means give.

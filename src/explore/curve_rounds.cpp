@@ -174,7 +174,7 @@ void CurveRounds::add_curve(const RunFiles& files, const Labelled& label, bool h
   const std::string name = fmt::format("{}_{}{}_curve", files.name, label.type, label.label);
   const CurveCommand command = curve_command(label.start, files.settings, context_.system, commands.problem(),
                                              commands.path(files.name), commands.path(name));
-  const bool rests = files.settings.problem_type == equilibrium.number;
+  const bool rests = !family_of(files.settings).facts().headings.has_period;
   const Candidate candidate = candidate_at(files, label, has_returns, name, command, rests);
   (candidate.why_none.empty() ? next : unfollowed_).push_back(candidate);
 }

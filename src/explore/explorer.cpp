@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <iostream>
@@ -314,7 +313,7 @@ class Explorer {
     RunSettings settings = read_constants_file(commands_.file('r', name));
     const HybridSystem& system = loaded_.library->system();
     resolve_names(settings, system);
-    const bool are_tori = settings.problem_type == invariant_torus.number;
+    const bool are_tori = family_of(settings).facts().has_several_returns;
     const SolutionFile solutions = read_solution_file(commands_.file('q', name));
     for (const LabelledSolution& solution : solutions.solutions) {
       const std::string type = type_name(solution);

@@ -98,7 +98,7 @@ std::vector<CataloguedSection> catalogued_sections(const std::string& branch, co
   int number = 0;
   for (const PointSection& section : file.sections) {
     ++number;
-    const bool rests = section.problem_type == equilibrium.number;
+    const bool rests = !family_of(section.problem_type).facts().headings.has_period;
     const std::vector<std::string> names = rests ? state_columns(section) : monitors;
     std::vector<std::size_t> columns;
     if (const auto period = section.column("PERIOD"); period && !rests) columns.push_back(*period);
@@ -387,9 +387,10 @@ double orbit_distance(const ComparedOrbit& a, const ComparedOrbit& b, const std:
   if (x.problem_type != y.problem_type || n != y.dimension || n < 1) return unknown;
   if (x.states.size() == 0 || y.states.size() == 0 || x.states.rows() % n != 0 || y.states.rows() % n != 0)
     return unknown;
-  if (x.problem_type == equilibrium.number)
+  const FamilyFacts& facts = family_of(x.problem_type).facts();
+  if (!facts.headings.has_period)
     return distance(x.states.col(0), y.states.col(0), weights(x.states.leftCols(1), drifting));
-  if (x.problem_type != periodic_orbit.number) return unknown;
+  if (keeps_contact(x.problem_type) || !facts.has_return_map || facts.has_several_returns) return unknown;
   if (!is_smooth(a.signature)) return distance_of_ends(a, b, drifting);
   return is_smooth(b.signature) ? distance_of_curves(x, y, drifting) : unknown;
 }

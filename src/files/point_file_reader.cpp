@@ -342,7 +342,7 @@ std::optional<std::size_t> PointSection::column(const std::string& name) const {
 }
 
 std::string PointSection::at_rest(const std::string& column) const {
-  if (problem_type != equilibrium.number) return column;
+  if (family_of(problem_type).facts().headings.has_period) return column;
   for (int k = 1; k <= dimension; ++k)
     for (const char* const kind : {"max", "min", "mean"})
       for (const std::string& name : {state_name(k), fmt::format("U({})", k)})

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "files/solution_file.hpp"
 #include "orbit/mesh_adaptation.hpp"
 #include "settings/problem_type.hpp"

@@ -75,9 +75,19 @@ def includes_up(source):
     return faults
 
 
+def known_types(source):
+    """The names of problem types that other rooms may write into constants: periodic_orbit, ..."""
+    path = os.path.join(source, TABLE + "hpp")
+    text = open(path, encoding="utf-8").read() if os.path.exists(path) else ""
+    return re.findall(r"constexpr ProblemId (\w+)\{", text) or ["periodic_orbit"]
+
+
 def comparisons(source):
-    number = re.compile(r"\b(problem_type|branch_mode)(\(\))?\s*(==|!=|<=?|>=?)\s*-?\d"
-                        r"|-?\d+\s*(==|!=)\s*[\w.]*\b(problem_type|branch_mode)\b")
+    number = re.compile(r"\b(problem_type|branch_mode)(\(\))?\s*(==|!=|<=?|>=?)\s*(-?\d|[\w:]+\.(number|branch_mode)\b)"
+                        r"|(-?\b\d+|\b\w+\.(number|branch_mode))\s*(==|!=)\s*[\w.>-]*\b(problem_type|branch_mode)\b"
+                        r"|\bswitch \([^)]*\b(problem_type|branch_mode)\b"
+                        rf"|\b({'|'.join(known_types(source))})\.(number|branch_mode)\s*(==|!=)"
+                        rf"|(==|!=)\s*(tchat::)?({'|'.join(known_types(source))})\.(number|branch_mode)\b")
     return [f"{path}: {line.strip()}" for path, text in sources(source) if path.split(os.sep)[0] != OWNER and not path.startswith(TABLE)
             for line in text.splitlines() if number.search(line)]
 
@@ -94,10 +104,12 @@ def questions_about_families(source):
 
 def check_that_faults_are_found():
     with tempfile.TemporaryDirectory() as folder:
-        for room in ("orbit", "base", "attic"):
+        for room in ("orbit", "base", "attic", "settings"):
             os.mkdir(os.path.join(folder, room))
+        with open(os.path.join(folder, TABLE + "hpp"), "w") as file:
+            file.write("inline constexpr ProblemId equilibrium{1, 1};\n")
         with open(os.path.join(folder, "rooms.txt"), "w") as file:
-            file.write("# The rooms.\nbase | core | texts | quick | 2 | words\ncontract | headers\norbit  | core | - | - | 9 | orbits\n")
+            file.write("# The rooms.\nbase | core | texts | quick | 2 | words\ncontract | headers\nsettings | core | - | - | 9 | tables\norbit  | core | - | - | 9 | orbits\n")
         with open(os.path.join(folder, "base", "words.cpp"), "w") as file:
             file.write('#include "orbit/orbit.hpp"\nbool f(int problem_type) { return problem_type == 180; }\n')
         with open(os.path.join(folder, "orbit", "orbit.hpp"), "w") as file:
@@ -107,12 +119,19 @@ def check_that_faults_are_found():
             file.write("int chairs = 1;\n")
         assert "attic/chair.cpp is in no room of rooms.txt" in includes_up(folder)
         assert len(comparisons(folder)) == 1
+        with open(os.path.join(folder, "attic", "chair.cpp"), "w") as file:
+            file.write("bool a(int x) { return x == equilibrium.number; }\n"
+                       "bool b(const Settings& s) { return s.problem_type != tchat::equilibrium.number; }\n"
+                       "bool c(const Settings& s) { return equilibrium.number == s.problem_type; }\n"
+                       "int d(const Settings& s) { switch (s.problem_type) { default: return 0; } }\n"
+                       "s.problem_type = equilibrium.number;\n")
+        assert len(comparisons(folder)) == 5, comparisons(folder)
         assert over_budget(folder) == []
         with open(os.path.join(folder, "base", "words_test.cpp"), "w") as file:
             file.write("int words = 1;\n")
         assert len(over_budget(folder)) == 1 and "base has 3 lines" in over_budget(folder)[0]
-        assert names_and_count(folder, most=4) == [os.path.join("base", "words_test.cpp") + " is named like a test"]
-        assert len(names_and_count(folder, most=3)) == 2
+        assert names_and_count(folder, most=5) == [os.path.join("base", "words_test.cpp") + " is named like a test"]
+        assert len(names_and_count(folder, most=4)) == 2
         with open(os.path.join(folder, "orbit", "orbit.cpp"), "w") as file:
             file.write("bool g(int n) { return is_torus(n); }\n"
                        "auto& h(const DefiningSystem& x) { return static_cast<const TorusSystem&>(x); }\n")
