@@ -115,7 +115,8 @@ def main():
         assert diagram.picture().startswith(b"\x89PNG")
         check_dots(diagram)
         check_tree(diagram)
-        check_makefile(problem, diagram)
+        if PROBLEM == "linosc" or os.environ.get("TCHAT_ALL_TESTS"):
+            check_makefile(problem, diagram)
         again = tchat.Diagram(diagram.path, program=TCHAT)
         assert [one.name for one in again] == [one.name for one in diagram]
 

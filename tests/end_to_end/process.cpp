@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -27,6 +28,8 @@ void redirect(const std::string& path, int flags, int descriptor) {
 }
 
 }  // namespace
+
+bool all_tests() { return std::getenv("TCHAT_ALL_TESTS") != nullptr; }
 
 Process::Process(const std::vector<std::string>& words, const std::string& folder, const std::string& log) : log_(log) {
   std::vector<char*> arguments;

@@ -17,6 +17,9 @@ struct Outcome {
   std::string text() const { return out + err; }
 };
 
+/// Is what takes long wanted, too (scripts/test --all)?
+bool all_tests();
+
 class Process {
  public:
   /// Starts `words` (program with its path first) in `folder`; what it prints goes to two files named `log`.out and

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 #include <utility>
+
+#include "published/kept_folder.hpp"
 
 namespace test_support {
 
@@ -51,14 +54,33 @@ class TestReader {
 
 }  // namespace
 
+namespace {
+
+/// tchat run linosc ARGUMENTS -o NAME, or a copy of what it has written in another test.
+void run_once(const Workspace& workspace, const std::string& arguments, const std::string& name) {
+  namespace fs = std::filesystem;
+  const KeptFolder kept("linosc_" + name, {});
+  const fs::path complete = kept.path() / "complete";
+  const auto copy = [&](const fs::path& from, const fs::path& to) {
+    for (const char* const kind : {"p.", "q.", "d.", "r."})
+      if (fs::exists(from / (kind + name))) fs::copy_file(from / (kind + name), to / (kind + name));
+  };
+  if (fs::exists(complete)) return copy(kept.path(), workspace.file(""));
+  workspace.run(arguments + " -o " + name);
+  copy(workspace.file(""), kept.path());
+  fs::create_directory(complete);
+}
+
+}  // namespace
+
 void run_to_grazing_curve(const Workspace& workspace) {
-  workspace.run("-c to_grazing -d nonimpacting -o grazing");
-  workspace.run("-c grazing_curve -s grazing -o grazing_curve --both");
+  run_once(workspace, "-c to_grazing -d nonimpacting", "grazing");
+  run_once(workspace, "-c grazing_curve -s grazing --both", "grazing_curve");
 }
 
 void run_impacting(const Workspace& workspace, const std::string& omega) {
   run_to_grazing_curve(workspace);
-  workspace.run("-c impacting_" + omega + " -s grazing_curve -o impacting_" + omega);
+  run_once(workspace, "-c impacting_" + omega + " -s grazing_curve", "impacting_" + omega);
 }
 
 std::vector<DiagnosticPoint> read_diagnostics(const std::string& text) {

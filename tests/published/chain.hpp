@@ -13,7 +13,7 @@ namespace test_support {
 inline constexpr double zeta = 0.05;
 inline constexpr double restitution = 0.8;
 
-/// q.grazing, then q.grazing_curve.
+/// q.grazing, then q.grazing_curve. One test runs them, the others read copies, as of what is below.
 void run_to_grazing_curve(const Workspace& workspace);
 /// With the above and q.impacting_OMEGA, OMEGA = 20072 or 18901.
 void run_impacting(const Workspace& workspace, const std::string& omega);

@@ -1,10 +1,16 @@
 #include "support/random_matrices.hpp"
 
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <stdexcept>
 #include <unsupported/Eigen/MatrixFunctions>
+
+#include "support/decompositions.hpp"
+
+template class Eigen::PartialPivLU<Eigen::MatrixXd>;
+template class Eigen::FullPivLU<Eigen::MatrixXd>;
+template class Eigen::HouseholderQR<Eigen::MatrixXd>;
+template class Eigen::ColPivHouseholderQR<Eigen::MatrixXd>;
+template class Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
 
 // LAPACK: generalised eigenvalues (alpha_r + i alpha_i) / beta of the pair (a, b), which are overwritten.
 extern "C" void dggev_(const char* left, const char* right, const int* n, double* a, const int* lda, double* b,

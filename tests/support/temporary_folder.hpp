@@ -5,7 +5,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 
@@ -30,9 +29,15 @@ class TemporaryFolder {
     std::ofstream(file(name), std::ios::binary) << text;
     return file(name);
   }
+  /// What is there when it begins, of a file that grows; "" where there is none.
   std::string read(const std::string& name) const {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(path_ / name, error);
+    std::string text(error ? 0 : static_cast<std::size_t>(size), '\0');
     std::ifstream stream(file(name), std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    return text;
   }
   bool has(const std::string& name) const { return std::filesystem::exists(file(name)); }
 

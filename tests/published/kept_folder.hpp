@@ -1,0 +1,29 @@
+/// Folders in the build tree with results that several tests read: one computes them, the others find them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace test_support {
+
+/// A folder that belongs to this process until the object ends; others wait. It is another one for another program and
+/// for other contents of the sources.
+class KeptFolder {
+ public:
+  KeptFolder(const std::string& name, const std::vector<std::filesystem::path>& sources);
+  ~KeptFolder();
+  KeptFolder(const KeptFolder&) = delete;
+  KeptFolder& operator=(const KeptFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+  int lock_ = -1;
+};
+
+/// All files below `from` with the times of their last change, which make looks at.
+void copy_with_times(const std::filesystem::path& from, const std::filesystem::path& to);
+
+}  // namespace test_support
