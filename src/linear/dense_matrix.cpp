@@ -135,10 +135,16 @@ bool PivotedLu::is_regular() const {
   return sizes.size() == 0 || sizes.minCoeff() > rounding * sizes.maxCoeff();
 }
 
-Eigen::VectorXi PivotedLu::order() const {
-  Eigen::VectorXi rows(pivots_.size());
-  for (int k = 0; k < rows.size(); ++k) rows(k) = k;
-  for (int k = 0; k < rows.size(); ++k) std::swap(rows(k), rows(pivots_(k) - 1));
+Eigen::VectorXi elimination_order(Eigen::MatrixXd a) {
+  const int n = size_of(a.rows());
+  Eigen::VectorXi rows = Eigen::VectorXi::LinSpaced(n, 0, n - 1);
+  for (int k = 0; k < n; ++k) {
+    Eigen::Index below = 0;
+    a.col(k).tail(n - k).cwiseAbs().maxCoeff(&below);
+    a.row(k).swap(a.row(k + below));
+    std::swap(rows(k), rows(k + below));
+    for (int i = k + 1; i < n; ++i) a.row(i) -= a(i, k) / a(k, k) * a.row(k);
+  }
   return rows;
 }
 

@@ -1,4 +1,4 @@
-/// Small dense matrices outside the Newton loop, mostly by LAPACK, and Householder's reflections.
+/// Small dense matrices, mostly by LAPACK, and Householder's reflections.
 #pragma once
 
 #include <Eigen/Core>
@@ -46,8 +46,8 @@ void reflect(const Vector& w, Matrix&& matrix) {
   }
 }
 
-// What is asked of small dense matrices outside the Newton loop, mostly by LAPACK: Eigen's decompositions take half a
-// minute to compile.
+// What is asked of small dense matrices, mostly by LAPACK: Eigen's decompositions take half a minute to compile. These
+// allocate, unless they say that they do not: not for what is done at each step of Newton's method in large numbers.
 
 /// Of a square matrix, in no order.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& matrix);
@@ -84,13 +84,15 @@ class PivotedLu {
   double determinant() const { return parity() * pivots().prod(); }
   /// Whether no pivot is rounding against the largest.
   bool is_regular() const;
-  /// Row k of the factors is row order()(k) of the matrix.
-  Eigen::VectorXi order() const;
 
  private:
   Eigen::MatrixXd factors_;
   Eigen::VectorXi pivots_;  // row that row k was exchanged with, from 1
 };
+
+/// The rows in which it finds its pivots. Those of symmetric rows are equal up to rounding, so that no library decides
+/// which rounds in its own way on each processor.
+Eigen::VectorXi elimination_order(Eigen::MatrixXd matrix);
 
 /// PivotedLu(matrix).solve(right).
 Eigen::MatrixXd solve(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right);
@@ -146,7 +148,7 @@ class Orthonormalisation {
 
   /// V becomes Q.
   void apply(Eigen::MatrixXd& v);
-  /// |R_jj| of the last one.
+  /// |R_jj| of the last matrix.
   const Eigen::VectorXd& lengths() const { return lengths_; }
 
  private:

@@ -91,7 +91,7 @@ CollocationRule::CollocationRule(int points)
     value.row(j) = values.transpose();
     slope.row(j) = slopes.transpose();
   }
-  const Eigen::VectorXi order = PivotedLu(slope.rightCols(points)).order();
+  const Eigen::VectorXi order = elimination_order(slope.rightCols(points));
   gauss = gauss(order).eval();
   weights = weights(order).eval();
   value = value(order, Eigen::all).eval();

@@ -263,9 +263,9 @@ std::string crossing_curve(const NextStart& start, const RunSettings& settings) 
   const std::vector<PointType> meeting = curves_through(start.type);
   const auto is_own = [&](PointType one) { return static_cast<int>(one) == start.curve; };
   const bool is_one = std::any_of(meeting.begin(), meeting.end(), is_own);
-  if (!is_one || !is_two_parameter_curve(settings.problem_type, settings.branch_mode) ||
-      keeps_contact(settings.problem_type) || !settings.held.empty())
-    return "";
+  const ProblemFacts& facts = problem_type(settings).facts();
+  const bool is_usual = facts.in_two_parameters && facts.free_parameters <= 2 && !facts.switches_branch;
+  if (!is_one || !is_usual || facts.keeps_contact || !settings.held.empty()) return "";
   for (const PointType other : meeting)
     if (const int type = static_cast<int>(other); !is_own(other) && curve_of(type, settings.problem_type) != nullptr)
       return curve_name(settings.problem_type, type);

@@ -50,7 +50,7 @@ struct Evaluated {
 
 }  // namespace
 
-TEST_CASE("formulas compute what they say", "[slow]") {
+TEST_CASE("formulas compute what they say", "[compiles]") {
   const PluginFolder folder;
   folder.write("all.tch", everything);
   const ProblemLibrary library(resolve_plugin(folder / "all", folder.counting_compiler()));
@@ -102,7 +102,7 @@ TEST_CASE("formulas compute what they say", "[slow]") {
   CHECK(next({2, 1, 1}, 0.0, 0.3) == std::vector<IndexVector>{{1, 1, 1}});
 }
 
-TEST_CASE("derivatives of formulas are those of finite differences", "[slow]") {
+TEST_CASE("derivatives of formulas are those of finite differences", "[compiles]") {
   const PluginFolder folder;
   folder.write("smooth.tch",
                "par a=2, b=0.7\nx' = a*x^3 - x^b + y^2/(1 + x^2) + exp(-b*x)*hypot(x, y)\n"
@@ -116,7 +116,7 @@ TEST_CASE("derivatives of formulas are those of finite differences", "[slow]") {
   CHECK(check_derivatives(library.system(), options).fine());
 }
 
-TEST_CASE("a plugin of formulas belongs to its text", "[slow]") {
+TEST_CASE("a plugin of formulas belongs to its text", "[compiles]") {
   const PluginFolder folder;
   const PluginBuildOptions options = folder.counting_compiler();
   const std::string text = "par a=1\nx' = a\nevent e = x\n";

@@ -88,7 +88,7 @@ TEST_CASE("functions of plain numbers") {
     CHECK_THAT(text, Contains(cure));
 }
 
-TEST_CASE("members that are missing, private, or no templates", "[slow][slow]") {
+TEST_CASE("members that are missing, private, or no templates", "[compiles]") {
   check_told(problem("void feld(int, const T*, const T*, T*) const {}"), 10,
              "`field` must be: template <class T> void");
   check_told(problem(field(""), "static constexpr int dimension = 2, parameters = 1, fields = 1, jumps = 1;"), 9,
@@ -99,7 +99,7 @@ TEST_CASE("members that are missing, private, or no templates", "[slow][slow]") 
              "`field` must be: template <class T> void");
 }
 
-TEST_CASE("conditions of boundary value problems without their number, or numbers without them", "[slow][slow]") {
+TEST_CASE("conditions of boundary value problems without their number, or numbers without them", "[compiles]") {
   const std::string boundary =
       "template <class T> void boundary(const tchat::Ends<T>&, const T*, T* b) const { b[0] = 0.0; }";
   const std::string integrand =
@@ -120,7 +120,7 @@ TEST_CASE("conditions of boundary value problems without their number, or number
   says(integrand + "static constexpr int integral_conditions = 1;", "`boundary_conditions` must be at least 1");
 }
 
-TEST_CASE("sliding modes of functions that are not there, or are the same", "[slow][slow]") {
+TEST_CASE("sliding modes of functions that are not there, or are the same", "[compiles]") {
   const auto says = [](const std::string& numbers, const std::string& sentence) {
     CAPTURE(numbers);
     const std::vector<std::string> lines =
@@ -141,7 +141,7 @@ TEST_CASE("sliding modes of functions that are not there, or are the same", "[sl
        "`sliding`: surface, to_minus and to_plus must be three different event functions");
 }
 
-TEST_CASE("punctuation and the header", "[slow][slow]") {
+TEST_CASE("punctuation and the header", "[compiles]") {
   check_told(problem(field("f[1] = x[0]")), 5, "a ; is missing");
   check_told(problem(field("if (x[0] > 0) {")), 10, "a } is missing above: the { of line 3 is not closed");
   std::string no_header = problem(field(""));

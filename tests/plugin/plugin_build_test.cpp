@@ -72,7 +72,7 @@ void become_nobody() {
 
 }  // namespace
 
-TEST_CASE("tchat's header is read once for the plugins of a compiler", "[slow][slow]") {
+TEST_CASE("tchat's header is read once for the plugins of a compiler", "[compiles]") {
   const PluginFolder folder;
   const Environment cache("XDG_CACHE_HOME", folder / "cache");
   fs::copy(TCHAT_TEST_INCLUDE, folder / "include", fs::copy_options::recursive);

@@ -59,11 +59,12 @@ namespace {
 /// tchat run linosc ARGUMENTS -o NAME, or a copy of what it has written in another test.
 void run_once(const Workspace& workspace, const std::string& arguments, const std::string& name) {
   namespace fs = std::filesystem;
-  const KeptFolder kept("linosc_" + name, {});
+  const KeptFolder kept("linosc_" + name, files_of({LINOSC_CONSTANTS, LINOSC_LIBRARY}), arguments);
   const fs::path complete = kept.path() / "complete";
   const auto copy = [&](const fs::path& from, const fs::path& to) {
     for (const char* const kind : {"p.", "q.", "d.", "r."})
-      if (fs::exists(from / (kind + name))) fs::copy_file(from / (kind + name), to / (kind + name));
+      if (fs::exists(from / (kind + name)))
+        fs::copy_file(from / (kind + name), to / (kind + name), fs::copy_options::overwrite_existing);
   };
   if (fs::exists(complete)) return copy(kept.path(), workspace.file(""));
   workspace.run(arguments + " -o " + name);

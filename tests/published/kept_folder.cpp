@@ -4,6 +4,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <functional>
@@ -23,8 +24,20 @@ std::size_t hash_of(const fs::path& file) {
 
 }  // namespace
 
-KeptFolder::KeptFolder(const std::string& name, const std::vector<fs::path>& sources) {
-  std::size_t key = hash_of(TCHAT_EXECUTABLE);
+std::vector<fs::path> files_of(const std::vector<fs::path>& places) {
+  std::vector<fs::path> files;
+  for (const fs::path& place : places) {
+    if (fs::is_regular_file(place)) files.push_back(place);
+    if (!fs::is_directory(place)) continue;  // there are no constants for a chain that begins with a simulation
+    for (const auto& entry : fs::directory_iterator(place))
+      if (entry.is_regular_file() && entry.path().extension() != ".so") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+KeptFolder::KeptFolder(const std::string& name, const std::vector<fs::path>& sources, const std::string& words) {
+  std::size_t key = 31 * hash_of(TCHAT_EXECUTABLE) + std::hash<std::string>()(words);
   for (const fs::path& source : sources) key = 31 * key + hash_of(source);
   path_ = fs::path(KEPT_FOLDERS) / (name + "_" + std::to_string(key));
   fs::create_directories(path_);

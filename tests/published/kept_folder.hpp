@@ -7,11 +7,14 @@
 
 namespace test_support {
 
-/// A folder that belongs to this process until the object ends; others wait. It is another one for another program and
-/// for other contents of the sources.
+/// The files that are given or lie in folders that are given, without libraries in the latter, in a fixed order.
+std::vector<std::filesystem::path> files_of(const std::vector<std::filesystem::path>& places);
+
+/// A folder that belongs to this process until the object ends; others wait. It is another one for another tchat, for
+/// other contents of the sources and for other words.
 class KeptFolder {
  public:
-  KeptFolder(const std::string& name, const std::vector<std::filesystem::path>& sources);
+  KeptFolder(const std::string& name, const std::vector<std::filesystem::path>& sources, const std::string& words = "");
   ~KeptFolder();
   KeptFolder(const KeptFolder&) = delete;
   KeptFolder& operator=(const KeptFolder&) = delete;

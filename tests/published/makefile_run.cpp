@@ -32,14 +32,12 @@ std::set<std::string> files_in(const std::string& folder) {
 
 MakefileRun::MakefileRun(const std::string& problem, const std::string& targets)
     : problem_(problem), targets_(targets) {
-  std::vector<fs::path> sources;
-  for (const fs::path kind : {PROBLEMS, CONSTANTS})
-    if (fs::exists(kind / problem))  // there are no constants for a chain that begins with a simulation
-      for (const auto& entry : fs::directory_iterator(kind / problem))
-        if (entry.is_regular_file() && entry.path().extension() != ".so") sources.push_back(entry.path());
-  const KeptFolder kept(problem, sources);
+  const std::vector<fs::path> sources = files_of({fs::path(PROBLEMS) / problem, fs::path(CONSTANTS) / problem});
+  std::vector<fs::path> all = files_of({CONTRACT});
+  all.insert(all.end(), sources.begin(), sources.end());
+  const KeptFolder kept(problem, all);
   for (const fs::path& source : sources) {
-    const fs::path target = kept.path() / fs::path(source).lexically_relative(fs::path(PROBLEMS).parent_path());
+    const fs::path target = kept.path() / source.lexically_relative(fs::path(PROBLEMS).parent_path());
     fs::create_directories(target.parent_path());
     if (!fs::exists(target)) fs::copy_file(source, target);
   }

@@ -15,8 +15,8 @@ class MakefileRun {
   /// `targets`: of the Makefile, or results by their names, as in q.NAME. Fails the test unless make succeeds.
   explicit MakefileRun(const std::string& problem, const std::string& targets = "all");
 
-  /// Once more there is nothing to do; without -j2 every file is the same to the byte; `make clean` leaves nothing. Of
-  /// chains that take long (Chain::is_long) the files are compared only where all tests are wanted.
+  /// Once more there is nothing to do; without -j2 every file that it makes is the same to the byte; `make clean`
+  /// leaves nothing. Of chains that take long (Chain::is_long) the files are compared only where all tests are wanted.
   enum class Chain { is_short, is_long };
   void check_repeatable(Chain length = Chain::is_short) const;
 
