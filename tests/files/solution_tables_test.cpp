@@ -31,7 +31,7 @@ std::vector<std::vector<double>> rows_of(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("An orbit in physical time", "[output]") {
+TEST_CASE("tables: an orbit in physical time", "[output]") {
   const LabelledSolution orbit = sample_orbit(2, 3, 2, 2);  // durations 1.5, 2, 2.5
   const std::string text = format_orbit_table(orbit, "q.x");
   CHECK_THAT(text, Contains("# q.x: label 5 (PD), 3 segments, period 6\n# PAR(1) = 3\n"));
