@@ -134,7 +134,7 @@ TEST_CASE("after SIGKILL the files load, an incomplete set never replaces a comp
 
 TEST_CASE("two runs with one output name: the second is refused while the first goes on") {
   const Workspace workspace;
-  const auto process = workspace.start_tchat(endless);
+  const auto process = workspace.start_tchat(endless + " NPR=200");  // the others wait: few labels, or 200 MB
   wait_for_points(workspace, *process, 1);
   for (const std::string second : {"run linosc -c impacting -d impacting -o branch NMX=3",
                                    "run linosc -c impacting -d impacting -o branch --append NMX=3",
