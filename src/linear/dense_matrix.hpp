@@ -134,7 +134,7 @@ double distance_to_null_space(Eigen::MatrixXd& columns);
 
 double least_singular_value(const Eigen::MatrixXcd& matrix);
 
-/// Of a square matrix = left diag(sizes) right^T, sizes descending; not a number where it is not finite.
+/// A square matrix as left diag(sizes) right^T, with descending sizes; all NaN if the matrix is not finite.
 struct SingularVectors {
   Eigen::VectorXd sizes;
   Eigen::MatrixXd left, right;
