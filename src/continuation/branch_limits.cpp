@@ -194,7 +194,10 @@ class BoundTest final : public TestFunction {
 
 double BranchBounds::value(const Orbit& orbit, const CollocationRule& rule) const {
   if (parameter != solution_measure) return orbit.par(parameter - 1);
-  return tchat::solution_measure(orbit, rule, weights, measure);
+  if (units.size() == 0) return tchat::solution_measure(orbit, rule, weights, measure);
+  Orbit shown = orbit;
+  shown.states = units.asDiagonal() * orbit.states;
+  return tchat::solution_measure(shown, rule, weights, measure);
 }
 
 bool BranchBounds::is_finite() const { return least > -no_bound || most < no_bound; }
@@ -244,7 +247,7 @@ void ClosedBranch::begin(const PathPoint& first, double direction) {
   travelled_ = 0.0;
   if (phase_is_fixed_) return;
   measure_sizes_ = Eigen::VectorXd();
-  measure_sizes_ = 1.0 + measures(first.orbit).array().abs();
+  measure_sizes_ = sizes_of_measures(first.orbit, measures(first.orbit));
   first_measures_ = measures(first.orbit);
   Orbit beyond = first.orbit;
   advance(beyond, std::copysign(probe, direction), first.tangent, system_.free_parameters());
@@ -314,21 +317,30 @@ bool ClosedBranch::is_first(const PathPoint& point) const {
   const NewtonSettings& newton = follower_.newton_settings();
   const Orbit& a = first_.orbit;
   const Orbit& b = point.orbit;
-  const auto equal = [&](double one, double other) {
-    return std::abs(one - other) <= same * newton.tolerance_parameters * (1.0 + std::abs(one));
+  const auto equal = [&](double one, double other, double size) {
+    return std::abs(one - other) <= same * newton.tolerance_parameters * size;
   };
   for (const int k : system_.free_parameters())
-    if (!equal(a.par(k - 1), b.par(k - 1))) return false;
+    if (!equal(a.par(k - 1), b.par(k - 1), system_.system().parameter_size(k, a.par(k - 1)))) return false;
   for (int s = 0; s < a.shape.segments; ++s)
-    if (!equal(a.duration(s), b.duration(s))) return false;
+    if (!equal(a.duration(s), b.duration(s), time_size(system_, a) + std::abs(a.duration(s)))) return false;
   if (!phase_is_fixed_) return (measures(b) - first_measures_).cwiseAbs().maxCoeff() <= same_measures;
   const double size = 1.0 + a.states.cwiseAbs().maxCoeff();
   return (a.states - b.states).cwiseAbs().maxCoeff() <= same * newton.tolerance_states * size &&
          dot(first_.dual, point.tangent) > one_direction;
 }
 
-/// Free parameters, durations, means and root mean squares of the states, each relative to 1 + its size at the first
-/// point.
+/// Of states, in units of their sizes, 1 and more.
+Eigen::VectorXd ClosedBranch::sizes_of_measures(const Orbit& x, const Eigen::VectorXd& measured) const {
+  Eigen::VectorXd sizes = 1.0 + measured.array().abs();
+  const Eigen::Index free = system_.free_count(), segments = x.shape.segments;
+  for (Eigen::Index g = 0; g < free; ++g) sizes(g) = parameter_size(system_, x, static_cast<int>(g));
+  for (Eigen::Index s = 0; s < segments; ++s)
+    sizes(free + s) = time_size(system_, x) + std::abs(x.duration(static_cast<int>(s)));
+  return sizes;
+}
+
+/// Free parameters, durations, means and root mean squares of the states, each relative to its size at the first point.
 Eigen::VectorXd ClosedBranch::measures(const Orbit& x) const {
   const int n = x.shape.dimension;
   const Eigen::VectorXd weights = Eigen::VectorXd::Ones(n);

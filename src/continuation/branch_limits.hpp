@@ -63,6 +63,7 @@ struct BranchBounds {
   double least = -1e300, most = 1e300;
   int measure = 0;               ///< IPLT, of the solution measure
   Eigen::VectorXd weights = {};  ///< THU, n entries, likewise
+  Eigen::VectorXd units = {};    ///< of the states, likewise; none: all are 1
 
   double value(const Orbit& orbit, const CollocationRule& rule) const;
   /// Is there a bound that excludes anything? 1e300 does not.
@@ -115,6 +116,7 @@ class ClosedBranch {
   bool reach(Return& way, const PathPoint& next, double ds);
   bool is_first(const PathPoint& point) const;
   Eigen::VectorXd measures(const Orbit& x) const;
+  Eigen::VectorXd sizes_of_measures(const Orbit& x, const Eigen::VectorXd& measured) const;
 
   PathFollower& follower_;
   const DefiningSystem& system_;

@@ -35,9 +35,11 @@ constexpr double shrunk = 1e-6;
 /// Special points that are so many tolerances of their location away from a point are at that point.
 constexpr double same_place = 10.0;
 
-/// On arclength.
+/// On arclength: states are known to a share of their size; where steps are far shorter, as those of a parameter in
+/// large units, to a share of ten thousand of these.
 double location_accuracy(const ContinuationSettings& settings) {
-  return settings.location_tolerance * (1.0 + std::sqrt(std::abs(settings.step.initial * settings.step.maximum)));
+  const double step = std::sqrt(std::abs(settings.step.initial * settings.step.maximum));
+  return settings.location_tolerance * (std::min(1.0, 1e4 * settings.step.maximum) + step);
 }
 
 LocationSettings location_settings(const ContinuationSettings& settings) {
@@ -64,7 +66,7 @@ std::vector<BranchBounds> branch_bounds(const ContinuationSettings& settings) {
   all.push_back(
       {settings.principal, settings.principal_name, "RL0", "RL1", settings.parameter_min, settings.parameter_max});
   all.push_back({BranchBounds::solution_measure, "the solution measure", "A0", "A1", settings.measure_min,
-                 settings.measure_max, settings.measure, settings.state_weights});
+                 settings.measure_max, settings.measure, settings.state_weights, settings.state_units});
   all.insert(all.end(), settings.further_bounds.begin(), settings.further_bounds.end());
   std::erase_if(all, [](const BranchBounds& bounds) { return !bounds.is_finite(); });
   return all;

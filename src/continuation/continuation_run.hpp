@@ -23,7 +23,8 @@ struct ContinuationSettings {
   double measure_min = -1e300, measure_max = 1e300;      ///< A0, A1
   int measure = 0;                                       ///< IPLT
   std::vector<BranchBounds> further_bounds;              ///< BOUNDS
-  Eigen::VectorXd state_weights;                         ///< THU, n entries
+  Eigen::VectorXd state_weights;                         ///< THU, n entries, in the units of the user
+  Eigen::VectorXd state_units = {};                      ///< of the orbits' states, in those; none: all are 1
   int print_every = 0;                                   ///< NPR
   int adapt_mesh_every = 0;                              ///< IAD
   bool multipliers = true;                               ///< ISP > 0

@@ -47,14 +47,14 @@ bool is_rounding(double residual, const Orbit& x) { return residual < rounding_r
 
 double largest_state(const Orbit& x) { return array_functions().range(x.states.data(), x.states.size()).largest; }
 
-OrbitChange change_by(const OrbitVector& dx, const Orbit& x, const std::vector<int>& free_parameters,
-                      const ArrayRange& range, double largest) {
+OrbitChange change_by(const DefiningSystem& system, const OrbitVector& dx, const Orbit& x, const ArrayRange& range,
+                      double largest) {
+  const double time = time_size(system, x);
   OrbitChange change{0.0, range.finite ? range.largest / (1.0 + largest) : std::numeric_limits<double>::quiet_NaN()};
   for (int s = 0; s < x.shape.segments; ++s)
-    change.parameters = std::max(change.parameters, std::abs(dx.durations(s)) / (1.0 + std::abs(x.duration(s))));
-  for (std::size_t g = 0; g < free_parameters.size(); ++g)
-    change.parameters = std::max(change.parameters, std::abs(dx.globals(static_cast<Eigen::Index>(g))) /
-                                                        (1.0 + std::abs(x.par(free_parameters[g] - 1))));
+    change.parameters = std::max(change.parameters, std::abs(dx.durations(s)) / (time + std::abs(x.duration(s))));
+  for (int g = 0; g < system.free_count(); ++g)
+    change.parameters = std::max(change.parameters, std::abs(dx.globals(g)) / parameter_size(system, x, g));
   return change;
 }
 
@@ -135,7 +135,7 @@ OrbitChange NewtonChord::apply(Orbit& x) const {
   ArrayRange change{}, states{};
   array_functions().add_and_measure(1.0, dx_.states.data(), x.states.data(), x.states.size(), &change, &states);
   advance_parameters(x, 1.0, dx_, free_parameters);
-  return change_by(dx_, x, free_parameters, change, states.largest);
+  return change_by(problem_.system(), dx_, x, change, states.largest);
 }
 
 }  // namespace tchat

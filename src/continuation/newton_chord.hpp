@@ -16,7 +16,7 @@ enum class NewtonStatus { converged, too_many_iterations, diverging, not_finite,
 struct NewtonIteration {
   int number = 0;
   double parameter = 0.0;         ///< the first free problem parameter after the correction
-  double parameter_change = 0.0;  ///< largest |dp| / (1 + |p|)
+  double parameter_change = 0.0;  ///< largest |dp| / (s + |p|)
   double state_change = 0.0;      ///< max |du| / (1 + max |u|)
   double residual = 0.0;          ///< largest residual before the correction
   double larger() const { return std::max(parameter_change, state_change); }
@@ -40,8 +40,10 @@ std::string describe(NewtonStatus status);
 // The first `full_iterations` (NWTN) iterations use a new Jacobian each, later ones the last one (chord), up to
 // `max_iterations` (ITNW). With a condition every iteration is a full one. Converged when, for the correction just
 // applied,
-//     |dp| / (1 + |p|) <= tolerance_parameters  for durations and free parameters (EPSL), and
-//     max |du| / (1 + max |u|) < tolerance_states                                (EPSU).
+//     |dp| / (s + |p|) <= tolerance_parameters  for durations and free parameters (EPSL), and
+//     max |du| / (1 + max |u|) < tolerance_states                                (EPSU),
+// s the period or the size that the parameter is known to have (HybridSystem::parameter_size), u states in units of
+// their own sizes.
 // Given up at once when the larger of the two exceeds 20 times its value at the first iteration. Near a branch point
 // the corrections are rounding, magnified by a nearly singular matrix, and do not get smaller: there a residual at
 // rounding level is accepted, and such a correction not applied.
@@ -56,13 +58,13 @@ struct NewtonSettings {
 
 /// Largest relative change of an orbit, as Newton's method measures corrections.
 struct OrbitChange {
-  double parameters = 0.0;  ///< |dp| / (1 + |p|) of durations and free parameters
+  double parameters = 0.0;  ///< |dp| / (s + |p|) of durations and free parameters
   double states = 0.0;      ///< max |du| / (1 + max |u|); NaN when they are not finite
   double larger() const { return parameters > states ? parameters : states; }
 };
 /// The change of x by dx. `range` is that of dx.states, `largest` is max |u| of x.
-OrbitChange change_by(const OrbitVector& dx, const Orbit& x, const std::vector<int>& free_parameters,
-                      const ArrayRange& range, double largest);
+OrbitChange change_by(const DefiningSystem& system, const OrbitVector& dx, const Orbit& x, const ArrayRange& range,
+                      double largest);
 double largest_state(const Orbit& x);
 
 /// Is a residual of this size zero but for rounding?

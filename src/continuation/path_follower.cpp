@@ -113,7 +113,7 @@ PathFollower::PathFollower(const DefiningSystem& system, const OrbitShape& shape
       monitors_(std::move(monitors.watched)),
       problem_(system, shape, std::move(condition), std::move(monitors.held), settings.threads),
       newton_(problem_, settings),
-      predictor_(make_predictor(system.free_parameters())),
+      predictor_(make_predictor(system)),
       settings_(settings),
       dx_(condensed().make_vector()),
       on_tangent_{shape, uniform_mesh(shape), dx_.states, ParameterVector(system.layout(), shape.segments)} {
@@ -294,7 +294,6 @@ NewtonResult PathFollower::step_from_plane(const PathPoint& from, double ahead, 
 /// dx_ is set to the correction of x by the factors at hand, whatever the row was that they have, in the plane of a
 /// step from `from` that x is in.
 OrbitChange PathFollower::chord(const PathPoint& from, const Orbit& x) {
-  const std::vector<int>& free_parameters = system_.free_parameters();
   problem_.evaluate(x, newton_.residual());
   problem_.solve_across(newton_.residual(), dx_);
   const OrbitVector& along = problem_.tangent();
@@ -305,7 +304,7 @@ OrbitChange PathFollower::chord(const PathPoint& from, const Orbit& x) {
                                     &change);
   dx_.durations += share * along.durations;
   dx_.globals += share * along.globals;
-  return change_by(dx_, x, free_parameters, change, largest_state(x));
+  return change_by(problem_.system(), dx_, x, change, largest_state(x));
 }
 
 /// Brings a prediction nearer to the branch while that takes few chord iterations. How far it is moved.
@@ -383,7 +382,7 @@ OrbitChange PathFollower::difference(const Orbit& to, const Orbit& x, double ste
     const auto i = static_cast<Eigen::Index>(g);
     dx_.globals(i) = to.par(free[g] - 1) - (x.par(free[g] - 1) + step * v.globals(i));
   }
-  return change_by(dx_, to, free, change, states.largest);
+  return change_by(problem_.system(), dx_, to, change, states.largest);
 }
 
 bool PathFollower::solves(const Orbit& x) {

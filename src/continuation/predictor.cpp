@@ -22,8 +22,8 @@ bool Predictor::rejected(const Prediction& prediction, double correction) const 
   return !(correction <= std::max(largest_share * prediction.change, small_change));
 }
 
-std::unique_ptr<Predictor> make_predictor(const std::vector<int>& free_parameters) {
-  return std::make_unique<HermitePredictor>(free_parameters);
+std::unique_ptr<Predictor> make_predictor(const DefiningSystem& system) {
+  return std::make_unique<HermitePredictor>(system);
 }
 
 namespace {
@@ -152,8 +152,8 @@ void add_tangent(double ds, Weights& sum) {
 class Sources {
  public:
   Sources(const PathPoint& from, const std::array<Place, PathTrail::most>& places, int count,
-          const std::vector<int>& free)
-      : from_(from), places_(places), count_(count), free_(free) {
+          const DefiningSystem& system)
+      : from_(from), places_(places), count_(count), system_(system), free_(system.free_parameters()) {
     states_[0] = from.orbit.states.data();
     states_[1] = from.tangent.states.data();
     for (int k = 0; k < count; ++k) {
@@ -197,10 +197,13 @@ class Sources {
   double size(const Weights& weights, const ArrayRange& states, double largest_state) const {
     if (!states.finite) return std::numeric_limits<double>::quiet_NaN();
     double result = states.largest / (1.0 + largest_state);
+    const double time = time_size(system_, from_.orbit);
     for (int s = 0; s < from_.orbit.shape.segments; ++s)
-      result = std::max(result, std::abs(duration(weights, s)) / (1.0 + std::abs(from_.orbit.duration(s))));
+      if (const double change = std::abs(duration(weights, s)); change > 0.0)
+        result = std::max(result, change / (time + std::abs(from_.orbit.duration(s))));
     for (std::size_t g = 0; g < free_.size(); ++g)
-      result = std::max(result, std::abs(global(weights, g)) / (1.0 + std::abs(from_.orbit.par(free_[g] - 1))));
+      result =
+          std::max(result, std::abs(global(weights, g)) / parameter_size(system_, from_.orbit, static_cast<int>(g)));
     return result;
   }
 
@@ -235,23 +238,22 @@ class Sources {
   const PathPoint& from_;
   const std::array<Place, PathTrail::most>& places_;
   int count_;
+  const DefiningSystem& system_;
   const std::vector<int>& free_;
   std::array<const double*, most_sources> states_{};
 };
 
 }  // namespace
 
-HermitePredictor::HermitePredictor(std::vector<int> free_parameters) : free_parameters_(std::move(free_parameters)) {}
-
 Prediction HermitePredictor::predict(const PathPoint& from, double ds, Orbit& x) const {
   if (from.trail.empty() || from.trail.mesh() != from.orbit.mesh) return {};
   std::array<Place, PathTrail::most> places{};
-  const int count = useful_places(from, ds, free_parameters_, places);
+  const int count = useful_places(from, ds, system_.free_parameters(), places);
   if (count == 0) return {};
   std::array<Combination, most_inputs + 2> differences;
   divide_differences(places, count, differences);
 
-  const Sources sources(from, places, count, free_parameters_);
+  const Sources sources(from, places, count, system_);
   std::array<Weights, PathTrail::most> weights{};  // term by term
   double product = ds * ds;                        // of ds minus the nodes so far
   for (int k = 0; k < count; ++k) {
@@ -266,7 +268,7 @@ Prediction HermitePredictor::predict(const PathPoint& from, double ds, Orbit& x)
   sources.measure_and_put_states(ds, weights, ranges.data(), x);  // all terms are of use, nearly always
 
   const double largest = ranges[0].largest;
-  double last = std::abs(ds) * change_by(from.tangent, from.orbit, free_parameters_, ranges[1], largest).larger();
+  double last = std::abs(ds) * change_by(system_, from.tangent, from.orbit, ranges[1], largest).larger();
   Prediction terms;
   Weights sum{};
   int used = 0;

@@ -37,8 +37,8 @@ class Predictor {
   virtual bool rejected(const Prediction& prediction, double correction) const;
 };
 
-/// The predictor of all branches. `free_parameters` are the PAR indices of the defining system.
-std::unique_ptr<Predictor> make_predictor(const std::vector<int>& free_parameters);
+/// The predictor of all branches of solutions of `system`, which outlives it.
+std::unique_ptr<Predictor> make_predictor(const DefiningSystem& system);
 
 // A predictor of higher order, by the points that the branch has come from.
 //
@@ -54,12 +54,11 @@ std::unique_ptr<Predictor> make_predictor(const std::vector<int>& free_parameter
 
 class HermitePredictor final : public Predictor {
  public:
-  /// PAR indices of the free parameters of the defining system.
-  explicit HermitePredictor(std::vector<int> free_parameters);
+  explicit HermitePredictor(const DefiningSystem& system) : system_(system) {}
   Prediction predict(const PathPoint& from, double ds, Orbit& x) const override;
 
  private:
-  std::vector<int> free_parameters_;
+  const DefiningSystem& system_;
 };
 
 }  // namespace tchat

@@ -126,7 +126,6 @@ using Eigen::VectorXd;
 
 /// What q-files round away, and Newton's method leaves.
 constexpr double stored_accuracy = 1e-9;
-constexpr double least_scale = 1e-3;
 /// What integration along a segment must at least tell: where errors of the start grow by more, its end says nothing.
 constexpr double most_allowed = 1e-2;
 /// A difference of multipliers is no defect where a change of the map by this part of the tolerance explains it.
@@ -262,12 +261,6 @@ void compare_multipliers(std::vector<std::complex<double>> stored, bool has_triv
 
 }  // namespace
 
-VectorXd state_scales(const Orbit& x) {
-  VectorXd scale = x.states.cwiseAbs().rowwise().maxCoeff();
-  const double largest = scale.maxCoeff();
-  return scale.cwiseMax(largest > 0.0 ? least_scale * largest : 1.0);
-}
-
 std::vector<SegmentCheck> check_segments(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
                                          const VectorXd& scale, const MatrixXd& following, double tolerance,
                                          const std::vector<Eigen::Index>& angles) {
@@ -307,7 +300,8 @@ namespace {
 OrbitCheck check_segments_of(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
                              const MatrixXd& following, double tolerance) {
   OrbitCheck check;
-  check.segments = check_segments(system, settings, x, state_scales(x), following, tolerance);
+  check.segments =
+      check_segments(system, settings, x, state_sizes(system, settings.signature(), x), following, tolerance);
   for (int s = 0; s < x.shape.segments; ++s) {
     check.durations.push_back(x.duration(s));
     check.period += std::abs(x.duration(s));
@@ -332,7 +326,8 @@ OrbitCheck check_orbit(const HybridSystem& system, const RunSettings& settings, 
                        const CriticalMultipliers& critical) {
   OrbitCheck check = check_segments_of(system, settings, x, next_starts(x), tolerance);
   check.computes_multipliers = true;
-  const std::vector<SegmentLink> links = links_of(system, settings, x, check.segments, state_scales(x));
+  const std::vector<SegmentLink> links =
+      links_of(system, settings, x, check.segments, state_sizes(system, settings.signature(), x));
   if (links.empty()) return check;
   const ReturnPencil pencil(links);
   if (!pencil.determines_multipliers(tolerance)) return check;

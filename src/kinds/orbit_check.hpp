@@ -81,10 +81,6 @@ struct OrbitCheck {
   double critical_error = 0.0;
 };
 
-/// Sizes by which defects of the states are measured: max |x_k| over the orbit, but at least a thousandth of the
-/// largest.
-Eigen::VectorXd state_scales(const Orbit& x);
-
 /// Every segment from its stored start; column s of `following` (n x segments) is the state that its jump must lead to,
 /// which state_defect counts; no column: not looked at. `settings` has all segments of the orbit. An event that could
 /// have ended a segment but whose jump takes whole turns off `angles` (states, from 0) alone is none.

@@ -273,7 +273,8 @@ Passage pass(const HybridSystem& system, const StoredSegment& segment, const Vec
     return taylor(system, segment, par, scale);
   FlowOptions options;
   options.relative_tolerance = 1e-13;
-  options.absolute_tolerance = 1e-15 * std::min(1.0, scale.minCoeff());
+  options.absolute_tolerance = 1e-15;
+  options.sizes = scale;
   options.max_steps = 20000;
   Passage passage = integrate(system, segment, par, scale, options, tolerance);
   if (passage.message.empty()) return passage;

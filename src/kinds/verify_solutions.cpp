@@ -182,7 +182,7 @@ OrbitCheck check_torus(const HybridSystem& system, const RunSettings& one_return
   const int orbits = x.shape.segments / m;
   const TorusSystem torus(system, one_return.signature(), orbits, {}, torus_winding(system, one_return.signature(), x));
   const RunSettings settings = settings_of_orbits(one_return, orbits);
-  const VectorXd scale = state_scales(x);
+  const VectorXd scale = state_sizes(system, settings.signature(), x);
   const std::vector<Index> angles = angle_states(system, one_return.signature(), section_curve(torus, x), x.par);
   OrbitCheck result;
   for (const double offset : {0.0, 0.5 / orbits}) {

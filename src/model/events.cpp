@@ -20,8 +20,13 @@ Eigen::MatrixXd project_along_flow(const Eigen::VectorXd& f, const Eigen::Vector
   return v + f * change_of_time(f, gradient, v);
 }
 
+double EventAt::scale(const double* x, const Eigen::VectorXd& sizes) const {
+  const Eigen::Map<const Eigen::VectorXd> state(x, gradient.size());
+  return gradient.cwiseAbs().dot(state.cwiseAbs().cwiseMax(sizes));
+}
+
 double EventAt::scale(const double* x) const {
-  return 1.0 + gradient.norm() * Eigen::Map<const Eigen::VectorXd>(x, gradient.size()).norm();
+  return gradient.norm() * (1.0 + Eigen::Map<const Eigen::VectorXd>(x, gradient.size()).norm());
 }
 
 EventAt event_at(const HybridSystem& system, int event, const double* x, const double* par) {

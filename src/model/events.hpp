@@ -32,7 +32,9 @@ struct EventAt {
 
   double rate() const { return gradient.dot(f); }              ///< h_x f
   double sizes() const { return gradient.norm() * f.norm(); }  ///< |h_x| |f|
-  /// What rounding of the state, as a share of it, makes of h: up to this times that share h is zero.
+  /// What states of their sizes make of h: up to this times a share to which they are known h is zero. `sizes`: of the
+  /// states, n; none: as of a problem in units of its own orbit (model/scales.hpp), whose states are of size 1.
+  double scale(const double* x, const Eigen::VectorXd& sizes) const;
   double scale(const double* x) const;
   /// Onto the surface of the event, along the flow.
   Eigen::MatrixXd project(const Eigen::MatrixXd& v) const { return project_along_flow(f, gradient, v); }

@@ -13,7 +13,7 @@ std::string named_state(const HybridSystem& system, const double* x) {
   constexpr int most_shown = 8;
   std::string text;
   for (int k = 1; k <= std::min(system.dimension(), most_shown); ++k)
-    text += fmt::format("{}{} = {:.6g}", k > 1 ? ", " : "", system.state_name(k), x[k - 1]);
+    text += fmt::format("{}{} = {:.6g}", k > 1 ? ", " : "", system.state_name(k), system.unit_of(k) * x[k - 1]);
   if (system.dimension() > most_shown) text += fmt::format(" and {} more", system.dimension() - most_shown);
   return text;
 }
@@ -24,10 +24,12 @@ std::string undefined_value(const HybridSystem& system, FunctionKind kind, int i
 }
 
 std::string no_finite_derivatives(const HybridSystem& system, FunctionKind kind, int index, const Eigen::VectorXd& x) {
+  Eigen::VectorXd shown = x;
+  for (int k = 1; k <= static_cast<int>(x.size()); ++k) shown(k - 1) *= system.unit_of(k);
   return fmt::format(
       "{} has no finite derivatives at x = ({:.6g}); sqrt, cbrt, hypot and atan2 have none at zero, asin and acos none "
       "at 1 and -1: start elsewhere, or round the function off there, as sqrt(x^2 + 1e-12)",
-      system.function_name(kind, index), fmt::join(x.begin(), x.end(), ", "));
+      system.function_name(kind, index), fmt::join(shown.begin(), shown.end(), ", "));
 }
 
 bool has_finite_derivatives(const HybridSystem& system, FunctionKind kind, int index, const double* x,

@@ -52,7 +52,7 @@ void identity_second(int n, int active, const double* direction, double* out, do
 
 }  // namespace
 
-HybridSystem::HybridSystem(const tchat_problem& table) : table_(&table) {
+HybridSystem::HybridSystem(const tchat_problem& table, const Scales* scales) : table_(&table), scales_(scales) {
   require(
       table.abi_version == TCHAT_PROBLEM_ABI,
       fmt::format("its interface version is {}, this tchat reads version {}", table.abi_version, TCHAT_PROBLEM_ABI));

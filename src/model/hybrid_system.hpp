@@ -2,7 +2,9 @@
 /// lacks.
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -35,11 +37,18 @@ struct OrbitEnds {
   const double* par;
 };
 
+/// What one unit of each state and each parameter is (model/scales.hpp).
+struct Scales {
+  Eigen::VectorXd units;       ///< of states, in those that users read: n
+  Eigen::VectorXd parameters;  ///< sizes of the parameters, from PAR(1)
+};
+
 class HybridSystem {
  public:
   /// A view of a table that outlives this object. Throws std::invalid_argument when the table is not usable
   /// (ABI version, sizes out of range, missing functions).
-  explicit HybridSystem(const tchat_problem& table);
+  /// `scales` outlive it as well; null: units and sizes are 1.
+  explicit HybridSystem(const tchat_problem& table, const Scales* scales = nullptr);
 
   int dimension() const { return table_->dimension; }
   /// May modes have fewer states? The others of those are zero there.
@@ -65,6 +74,15 @@ class HybridSystem {
   /// The mode that a field belongs to; null when it is none that slides.
   const tchat_sliding* sliding_mode(int field) const;
   const tchat_problem& table() const { return *table_; }
+
+  /// What a value 1 of state k, from 1, is in the units of its user.
+  double unit_of(int k) const { return scales_ == nullptr ? 1.0 : scales_->units(k - 1); }
+  /// Against which a change of parameter k, from 1, is small where it has this value: |value| and the size that the
+  /// parameter is known to have.
+  double parameter_size(int k, double value) const {
+    const bool is_known = scales_ != nullptr && k <= scales_->parameters.size();
+    return (is_known ? scales_->parameters(k - 1) : 1.0) + std::abs(value);
+  }
 
   std::string name() const { return table_->name; }
   /// User's name or "U(k)", "PAR(k)", "field i", ... ; k counts from 1. Durations are "T1", ..., and the rotation
@@ -139,6 +157,7 @@ class HybridSystem {
   bool is_identity(FunctionKind kind, int index) const { return kind == FunctionKind::jump && index == no_function; }
 
   const tchat_problem* table_;
+  const Scales* scales_;
 };
 
 /// The least number of states that a mode of the signature has: an orbit has this many multipliers; the others are

@@ -53,16 +53,31 @@ void AttractorSearch::find_ignorable(const HybridSimulation& motion, const Simul
     if (flags[i]) ignorable_.push_back(static_cast<Index>(i));
 }
 
-bool AttractorSearch::is_beyond(const VectorXd& x, double bound) const {
+bool AttractorSearch::is_beyond(const VectorXd& x, double bound, const VectorXd& start) const {
   for (Index i = 0; i < x.size(); ++i)
-    if (!(std::abs(x(i)) <= bound) && std::find(ignorable_.begin(), ignorable_.end(), i) == ignorable_.end())
+    if (!(std::abs(x(i)) <= bound * std::max(1.0, std::abs(start(i)))) &&
+        std::find(ignorable_.begin(), ignorable_.end(), i) == ignorable_.end())
       return true;
   return false;
 }
 
+namespace {
+
+/// Which of the tiny states are nothing but rounding of zero?
+std::vector<bool> rounding_among(std::vector<bool> tiny, const HybridSimulation& motion,
+                                 const SimulatedSegment& segment) {
+  if (std::find(tiny.begin(), tiny.end(), true) == tiny.end()) return {};
+  const std::vector<bool> known = sizes_in(motion.system(), {&segment, 1}, motion.parameters()).known();
+  for (std::size_t i = 0; i < tiny.size(); ++i) tiny[i] = tiny[i] && !known[i];
+  return tiny;
+}
+
+}  // namespace
+
 void AttractorSearch::add(const HybridSimulation& motion, const SimulatedSegment& segment) {
   if (points_.size() < points_looked_at) find_ignorable(motion, segment);
   recurrence_.add(segment);
+  recurrence_.take_for_rounding(rounding_among(recurrence_.tiny_states(), motion, segment));
   last_.push_back(segment);
   if (last_.size() > static_cast<std::size_t>(max_period_)) last_.pop_front();
   passed_.push_back({segment.index, segment.end});
@@ -113,7 +128,8 @@ bool AttractorSearch::try_rest(const HybridSimulation& motion) {
   for (std::size_t back = 1; back <= passed_.size() && (2 * back <= passed_.size() || states.size() < least); ++back)
     if (const Passed& at = passed_[passed_.size() - back]; is_alike(at)) states.push_back(at.end);
   std::reverse(states.begin(), states.end());
-  equilibrium_ = approached_equilibrium(motion.system(), index, states, least, motion.parameters(), ignorable_);
+  equilibrium_ =
+      approached_equilibrium(motion.system(), index, states, least, motion.parameters(), ignorable_, motion.sizes());
   return equilibrium_.has_value();
 }
 

@@ -62,8 +62,9 @@ class AttractorSearch {
   /// yet.
   bool is_near_unstable_orbit() const { return is_near_unstable_; }
   const std::vector<Eigen::Index>& ignorable() const { return ignorable_; }
-  /// A state is larger than so much; those that nothing depends on do not count.
-  bool is_beyond(const Eigen::VectorXd& x, double bound) const;
+  /// A state is larger than so much, and than so many times its value at the start; those that nothing depends on do
+  /// not count.
+  bool is_beyond(const Eigen::VectorXd& x, double bound, const Eigen::VectorXd& start) const;
 
  private:
   bool try_recurrence(const HybridSimulation& motion, int period);

@@ -104,10 +104,25 @@ struct CvodesFlow::Implementation {
   void start() {
     CVodeSetErrHandlerFn(cvode(), &keep_message, this);
     CVodeInit(cvode(), &right_hand_side, 0.0, x.get());
-    CVodeSStolerances(cvode(), options.relative_tolerance, options.absolute_tolerance);
+    set_tolerances();
     CVodeSetUserData(cvode(), this);
     CVodeSetLinearSolver(cvode(), linear_solver.get(), matrix.get());
     CVodeSetJacFn(cvode(), &jacobian);
+  }
+
+  /// Absolute ones are shares of sizes, where these are known and small.
+  void set_tolerances() {
+    constexpr double no_size = 1e-100;
+    if (are_usual(options.sizes)) {
+      CVodeSStolerances(cvode(), options.relative_tolerance, options.absolute_tolerance);
+      return;
+    }
+    const Vector absolute(N_VNew_Serial(n, context.get()), &N_VDestroy);
+    for (int i = 0; i < n; ++i) {
+      const double size = options.sizes(i) > no_size ? std::min(options.sizes(i), 1.0) : 1.0;
+      N_VGetArrayPointer(absolute.get())[i] = options.absolute_tolerance * size;
+    }
+    CVodeSVtolerances(cvode(), options.relative_tolerance, absolute.get());
   }
 
   void start_sensitivities() {
@@ -252,7 +267,7 @@ struct CvodesFlow::Implementation {
     double h = watch->value(fallen, dense_output(time));
     for (int iteration = 0; iteration < 3; ++iteration) {
       const double moved = time - h / watch->rate(fallen, dense_output(time));
-      const bool is_small = std::abs(moved - time) <= 1e-10 * (1.0 + std::abs(time));
+      const bool is_small = std::abs(moved - time) <= 1e-10 * std::max(std::abs(time), length);
       if (!is_small || moved > current || moved < current - length) break;
       const double h_moved = watch->value(fallen, dense_output(moved));
       if (std::abs(h_moved) >= std::abs(h)) break;
@@ -307,8 +322,7 @@ CvodesFlow::~CvodesFlow() = default;
 
 void CvodesFlow::watch(const std::vector<int>& events, const std::vector<int>& after) {
   p_->events = events;
-  p_->watch.emplace(p_->system, p_->field, events, p_->par, N_VGetArrayPointer(p_->x.get()),
-                    p_->options.surface_tolerance, after);
+  p_->watch.emplace(p_->system, p_->field, events, p_->par, N_VGetArrayPointer(p_->x.get()), p_->options, after);
   p_->start_roots();
 }
 

@@ -7,6 +7,7 @@
 
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
+#include "model/scales.hpp"
 #include "motion/cvodes_flow.hpp"
 #include "orbit/mesh_adaptation.hpp"
 
@@ -17,6 +18,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+constexpr double waits = 10.0;       // for the event of a segment, as a multiple of the simulated turn
 constexpr double same_orbit = 0.1;   // largest correction, as a share of the orbit's range
 constexpr double same_state = 1e-7;  // of points of the refined orbit, likewise
 
@@ -46,6 +48,8 @@ PeriodicOrbit shoot_finely(const HybridSystem& system, FoundOrbit& found, const 
                            const std::vector<Eigen::Index>& ignorable) {
   ShootingOptions options;
   options.ignorable = ignorable;
+  options.flow.sizes = found.sizes;
+  options.flow.max_duration = found.longest_wait;
   const PeriodicOrbit orbit = shoot(system, found.signature, guess, par, options);
   found.uncertainty = 1e-9;
   if (orbit.converged) return orbit;
@@ -66,7 +70,8 @@ PeriodicOrbit shoot_finely(const HybridSystem& system, FoundOrbit& found, const 
 }
 
 /// How far each state goes on the simulated orbit; infinitely far where it does not matter.
-VectorXd ranges(const std::vector<SimulatedSegment>& turn, const std::vector<Eigen::Index>& ignorable) {
+VectorXd ranges(const std::vector<SimulatedSegment>& turn, const std::vector<Eigen::Index>& ignorable,
+                const VectorXd& sizes) {
   VectorXd low = turn.front().low;
   VectorXd high = turn.front().high;
   for (const SimulatedSegment& segment : turn) {
@@ -75,7 +80,7 @@ VectorXd ranges(const std::vector<SimulatedSegment>& turn, const std::vector<Eig
   }
   VectorXd range = high - low;
   for (const Eigen::Index k : ignorable) range(k) = 0.0;
-  range.array() += 1e-3 * range.maxCoeff();
+  range += 1e-3 * sizes;
   for (const Eigen::Index k : ignorable) range(k) = INFINITY;
   return range;
 }
@@ -163,15 +168,39 @@ FoundOrbit without_cuts(FoundOrbit orbit, std::vector<int> monitored) {
   return orbit;
 }
 
+StateSizes sizes_in(const HybridSystem& system, std::span<const SimulatedSegment> segments, const VectorXd& par) {
+  const Eigen::Index n = system.dimension();
+  MatrixXd extremes(n, 2 * std::ssize(segments));
+  for (Eigen::Index s = 0; s < std::ssize(segments); ++s)
+    extremes.middleCols(2 * s, 2) << segments[static_cast<std::size_t>(s)].low,
+        segments[static_cast<std::size_t>(s)].high;
+  StateSizes sizes(extremes);
+  VectorXd values(n);
+  MatrixXd by_state(n, n);
+  const auto add = [&](FunctionKind kind, int index, const VectorXd& x) {
+    system.first(kind, index, x.data(), par.data(), {}, values.data(), by_state.data(), nullptr);
+    sizes.add_states(values, by_state);
+  };
+  for (const SimulatedSegment& segment : segments) {
+    for (const VectorXd& x : {segment.start, segment.end}) add(FunctionKind::field, segment.index.field, x);
+    add(FunctionKind::jump, segment.index.jump, segment.end);
+    const EventAt at = event_at(system, segment.index.event, segment.end.data(), par.data());
+    sizes.add_event(at.h, at.gradient.transpose(), segment.end.data());
+  }
+  return sizes;
+}
+
 FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, const VectorXd& par,
                   const IndexVector& first, bool is_guess) {
   const std::vector<SimulatedSegment> turn = in_standard_order(result.turn, first);
   FoundOrbit found;
+  found.sizes = sizes_in(system, turn, par).sizes();
+  for (const SimulatedSegment& segment : turn) found.longest_wait += waits * segment.duration;
   for (const SimulatedSegment& segment : turn) {
     found.signature.push_back(segment.index);
     found.modes.push_back(segment.mode);
   }
-  const VectorXd range = ranges(turn, result.ignorable);
+  const VectorXd range = ranges(turn, result.ignorable, found.sizes);
   PeriodicOrbit orbit = shoot_finely(system, found, turn.front().start, par, result.ignorable);
   // Only where shooting has closed the orbit does its map have all segments.
   if (const std::size_t period = orbit.converged ? true_period(found, orbit, range) : turn.size();
@@ -210,12 +239,13 @@ constexpr int first_samples = 1600;
 
 /// x_s at duration * tau, the first and last columns being those of the refined orbit.
 MatrixXd sample_segment(const HybridSystem& system, int field, const MapSegment& segment, const VectorXd& par,
-                        IntegrationMethod method, const std::vector<double>& tau) {
+                        const FoundOrbit& orbit, const std::vector<double>& tau) {
   MatrixXd states = segment.start.replicate(1, static_cast<Eigen::Index>(tau.size()));
   states.rightCols(1) = segment.end;
   FlowOptions options;
   options.variational = false;
-  options.method = method;
+  options.method = orbit.method;
+  options.sizes = orbit.sizes;
   options.relative_tolerance = 1e-13;
   options.absolute_tolerance = 1e-14;
   options.max_steps = 10000000;
@@ -236,7 +266,7 @@ MatrixXd sample_all(const HybridSystem& system, const FoundOrbit& orbit, const V
   MatrixXd stacked(n * static_cast<Eigen::Index>(orbit.signature.size()), static_cast<Eigen::Index>(tau.size()));
   for (std::size_t s = 0; s < orbit.signature.size(); ++s)
     stacked.middleRows(static_cast<Eigen::Index>(s) * n, n) =
-        sample_segment(system, orbit.signature[s].field, orbit.map.segments[s], par, orbit.method, tau);
+        sample_segment(system, orbit.signature[s].field, orbit.map.segments[s], par, orbit, tau);
   return stacked;
 }
 

@@ -3,9 +3,11 @@
 
 #include <Eigen/Core>
 #include <complex>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "model/scales.hpp"
 #include "motion/orbit_flow.hpp"
 #include "motion/simulation_run.hpp"
 
@@ -37,11 +39,16 @@ struct FoundOrbit {
   int iterations = 0;                                   ///< Newton steps of shooting
   IntegrationMethod method = IntegrationMethod::adams;  ///< by which it was found
 
-  Eigen::VectorXd moved;     ///< of x_1(0), by the correction
-  double uncertainty = 0.0;  ///< of the moduli of multipliers: what integration leaves
+  Eigen::VectorXd sizes;      ///< of the states, n (StateSizes)
+  double longest_wait = 0.0;  ///< for the event of a segment
+  Eigen::VectorXd moved;      ///< of x_1(0), by the correction
+  double uncertainty = 0.0;   ///< of the moduli of multipliers: what integration leaves
 
   OrbitStability stability() const { return stability_of(multipliers, uncertainty); }
 };
+
+/// The sizes of the states in segments of a motion that have ended in events.
+StateSizes sizes_in(const HybridSystem& system, std::span<const SimulatedSegment> segments, const Eigen::VectorXd& par);
 
 /// A turn whose Poincare sections (identity jump, the same field after it) no longer end segments: each joins the
 /// segment after it. As it was when nothing else ends a segment. Samples and marks are not kept.

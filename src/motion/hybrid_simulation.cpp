@@ -9,6 +9,7 @@
 #include "base/messages.hpp"
 #include "model/events.hpp"
 #include "model/function_values.hpp"
+#include "model/scales.hpp"
 
 namespace tchat {
 
@@ -116,13 +117,14 @@ VectorXd image_of(const HybridSystem& system, const IndexVector& index, const Ve
 }
 
 /// |h| up to which x counts as on the surface of a start.
-double widest_on_surface(const EventAt& at, const VectorXd& x, double rounding) {
+double widest_on_surface(const EventAt& at, const VectorXd& x, const StateAccuracy& known) {
   const double typed = start_tolerance * at.gradient.cwiseProduct(x).cwiseAbs().sum();
-  return std::max(typed, rounding * at.scale(x.data()));
+  return std::max(typed, known.share * at.scale(x.data(), known.sizes));
 }
 
 /// Does the jump send x to a point of the same surface where h falls again, in a mode that watches the event?
-bool falls_again(ModeRule rule, const IndexVector& index, const VectorXd& x, const VectorXd& par, double rounding) {
+bool falls_again(ModeRule rule, const IndexVector& index, const VectorXd& x, const VectorXd& par,
+                 const StateAccuracy& known) {
   const HybridSystem& system = rule.system();
   const Mode next = rule.next(index, x, par);
   if (next.index_vectors.empty()) return false;
@@ -131,16 +133,16 @@ bool falls_again(ModeRule rule, const IndexVector& index, const VectorXd& x, con
   const VectorXd image = image_of(system, index, x, par);
   if (!image.allFinite()) return false;
   const EventAt at = event_at(system, index.event, next.field(), image.data(), par.data());
-  return std::abs(at.h) <= widest_on_surface(at, image, rounding) && at.rate() < 0.0;
+  return std::abs(at.h) <= widest_on_surface(at, image, known) && at.rate() < 0.0;
 }
 
 /// Nothing where the event needs no decision: the start is away from its surface, or the jump changes nothing.
 std::optional<SurfaceStart> judge(const ModeRule& rule, const IndexVector& index, const VectorXd& x,
-                                  const VectorXd& par, const StartSide& side, double rounding) {
+                                  const VectorXd& par, const StartSide& side, const StateAccuracy& known) {
   const HybridSystem& system = rule.system();
   const EventAt at = event_at(system, index.event, index.field, x.data(), par.data());
-  if (!(at.rate() < 0.0) || std::abs(at.h) > widest_on_surface(at, x, rounding)) return std::nullopt;
-  const bool is_on = std::abs(at.h) <= rounding * at.scale(x.data());
+  if (!(at.rate() < 0.0) || std::abs(at.h) > widest_on_surface(at, x, known)) return std::nullopt;
+  const bool is_on = std::abs(at.h) <= known.share * at.scale(x.data(), known.sizes);
   const bool is_wall = reverses_flow(system, index, x, par);
   SurfaceStart start{index, at.h, false, false};
   if (side.given == StartSide::Given::after && (side.event == index.event || (side.event == 0 && !is_wall))) {
@@ -148,10 +150,10 @@ std::optional<SurfaceStart> judge(const ModeRule& rule, const IndexVector& index
     return start;
   }
   if (side.given != StartSide::Given::before && is_wall) return is_on ? std::optional(start) : std::nullopt;
-  if (!is_wall && !moves_state(system, index, x, par, rounding)) return std::nullopt;
+  if (!is_wall && !moves_state(system, index, x, par, known)) return std::nullopt;
   if (side.given == StartSide::Given::before) return start;
   start.is_undecided = true;
-  start.is_after = (is_on || at.h < 0.0) && falls_again(rule, index, x, par, rounding);
+  start.is_after = (is_on || at.h < 0.0) && falls_again(rule, index, x, par, known);
   return is_on || start.is_after ? std::optional(start) : std::nullopt;
 }
 
@@ -165,18 +167,19 @@ bool reverses_flow(const HybridSystem& system, const IndexVector& index, const V
 }
 
 bool moves_state(const HybridSystem& system, const IndexVector& index, const VectorXd& x, const VectorXd& par,
-                 double rounding) {
-  return (image_of(system, index, x, par) - x).norm() > rounding * (1.0 + x.norm());
+                 const StateAccuracy& known) {
+  const VectorXd change = (image_of(system, index, x, par) - x).cwiseAbs();
+  return (change.array() > known.share * x.cwiseAbs().cwiseMax(known.sizes).array()).any();
 }
 
 std::vector<SurfaceStart> surface_starts(const ModeRule& rule, const Mode& mode, const VectorXd& x, const VectorXd& par,
-                                         const StartSide& side, double rounding) {
+                                         const StartSide& side, const StateAccuracy& known) {
   std::vector<SurfaceStart> starts;
   for (const IndexVector& index : mode.index_vectors) {
     const bool is_known = std::any_of(starts.begin(), starts.end(),
                                       [&](const SurfaceStart& start) { return start.index.event == index.event; });
     if (is_known) continue;
-    if (const auto start = judge(rule, index, x, par, side, rounding)) starts.push_back(*start);
+    if (const auto start = judge(rule, index, x, par, side, known)) starts.push_back(*start);
   }
   return starts;
 }
@@ -234,12 +237,16 @@ HybridSimulation::HybridSimulation(ModeRule rule, const VectorXd& x0, const Vect
   settings_.flow.variational = false;
   mode_ = rule_.first(x0, par_);
   clear_absent(system_, mode_.field(), x_);
-  surface_starts_ = tchat::surface_starts(rule_, mode_, x_, par_, settings_.side, settings_.flow.surface_tolerance);
+  if (settings_.flow.sizes.size() != x_.size())
+    settings_.flow.sizes =
+        mode_.index_vectors.empty() ? VectorXd(x_.cwiseAbs()) : sizes_at(system_, mode_.field(), x_, par_);
+  surface_starts_ = tchat::surface_starts(rule_, mode_, x_, par_, settings_.side, accuracy());
 }
 
 HybridSimulation::HybridSimulation(const HybridSimulation& at, const VectorXd& end, SimulationSettings settings)
     : HybridSimulation(at) {
   settings_ = std::move(settings);
+  settings_.flow.sizes = at.sizes();
   settings_.flow.variational = false;
   before_jump_ = end;
   system_.value(FunctionKind::jump, last_.jump, end.data(), par_.data(), x_.data());
@@ -247,7 +254,7 @@ HybridSimulation::HybridSimulation(const HybridSimulation& at, const VectorXd& e
 
 HybridSimulation::Surface HybridSimulation::surface(int field, int event, const VectorXd& x) const {
   const EventAt at = event_at(system_, event, field, x.data(), par_.data());
-  return {at.h, at.rate(), std::abs(at.h) <= settings_.flow.surface_tolerance * at.scale(x.data())};
+  return {at.h, at.rate(), std::abs(at.h) <= settings_.flow.surface_tolerance * at.scale(x.data(), sizes())};
 }
 
 /// Does the jump send the flow back from the surface, as an impact does?
@@ -257,8 +264,7 @@ bool HybridSimulation::is_wall(const IndexVector& index, const VectorXd& x) cons
 
 bool HybridSimulation::leaves_downwards(const IndexVector& index) const {
   const Surface at = surface(index.field, index.event, x_);
-  return at.is_near && at.rate < 0.0 && !is_wall(index, x_) &&
-         !moves_state(system_, index, x_, par_, settings_.flow.surface_tolerance);
+  return at.is_near && at.rate < 0.0 && !is_wall(index, x_) && !moves_state(system_, index, x_, par_, accuracy());
 }
 
 SimulatedSegment HybridSimulation::next(double end_time) {
@@ -396,6 +402,7 @@ void HybridSimulation::integrate(SimulatedSegment& segment, double end_time) {
   }
   segment.duration = flow.time();
   segment.end = flow.state();
+  settings_.flow.sizes = sizes().cwiseMax(segment.low.cwiseAbs()).cwiseMax(segment.high.cwiseAbs());
   note_contacts(segment, flow);
   if (settings_.samples > 0) thin(segment.samples, settings_.samples);
   std::sort(segment.marks.begin(), segment.marks.end(), [](const auto& a, const auto& b) { return a.time < b.time; });

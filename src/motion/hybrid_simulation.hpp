@@ -111,14 +111,18 @@ struct SurfaceStart {
 /// Does the jump send the flow back from the surface, as an impact does?
 bool reverses_flow(const HybridSystem& system, const IndexVector& index, const Eigen::VectorXd& x,
                    const Eigen::VectorXd& par);
-/// Does the jump take the state from the surface to another place? `rounding` is relative.
+/// How well states are known, as a share of their sizes: |h| up to this share of its scale is zero.
+struct StateAccuracy {
+  const Eigen::VectorXd& sizes;
+  double share;
+};
+/// Does the jump take the state from the surface to another place?
 bool moves_state(const HybridSystem& system, const IndexVector& index, const Eigen::VectorXd& x,
-                 const Eigen::VectorXd& par, double rounding);
+                 const Eigen::VectorXd& par, const StateAccuracy& known);
 
-/// Of the index vectors of `mode`, the first one of `rule`, at the start x. |h| / (1 + |h_x| |x|) up to `rounding` is
-/// zero.
+/// Of the index vectors of `mode`, the first one of `rule`, at the start x.
 std::vector<SurfaceStart> surface_starts(const ModeRule& rule, const Mode& mode, const Eigen::VectorXd& x,
-                                         const Eigen::VectorXd& par, const StartSide& side, double rounding);
+                                         const Eigen::VectorXd& par, const StartSide& side, const StateAccuracy& known);
 
 // A hybrid system run forward in time, one segment after the other.
 //
@@ -210,6 +214,8 @@ class HybridSimulation {
   const Eigen::VectorXd& parameters() const { return par_; }
   double time() const { return time_; }
   const Eigen::VectorXd& state() const { return x_; }
+  /// Of the states: the largest |x_i| so far, and what sizes_at() says of the start.
+  const Eigen::VectorXd& sizes() const { return settings_.flow.sizes; }
   /// The index vector that ended the last segment; (0,0,0) before any.
   const IndexVector& last_event() const { return last_; }
   /// Of the last segment; before any, that of the start.
@@ -223,6 +229,7 @@ class HybridSimulation {
   const std::vector<SurfaceStart>& surface_starts() const { return surface_starts_; }
 
  private:
+  StateAccuracy accuracy() const { return {sizes(), settings_.flow.surface_tolerance}; }
   /// h_j and h_x f under field i at x.
   struct Surface {
     double h = 0.0, rate = 0.0;

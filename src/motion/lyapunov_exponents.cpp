@@ -188,8 +188,7 @@ struct LyapunovAccumulator::Implementation {
     carried = 0.0;
     if (waiting) apply_saltation(field);
     watch.reset();
-    if (has_section())
-      watch.emplace(system, field, std::vector<int>{settings.section}, par, start, settings.flow.surface_tolerance);
+    if (has_section()) watch.emplace(system, field, std::vector<int>{settings.section}, par, start, settings.flow);
   }
 
   /// S V with S = g_x + (f+ - g_x f-) h_x / (h_x f-); of an event without velocity g_x alone.

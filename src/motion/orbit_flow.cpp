@@ -113,7 +113,7 @@ struct EndPoint {
   }
 
   /// False at grazing to rounding, and where a function cannot be evaluated.
-  bool is_transversal() const { return std::abs(velocity) > 1e-14 * hx.norm() * f.norm(); }
+  bool is_transversal() const { return std::abs(velocity) > 1e-14 * hx.cwiseAbs().dot(f.cwiseAbs()); }
 };
 
 VectorXcd sorted_eigenvalues(const MatrixXd& m) {
@@ -190,6 +190,8 @@ ReturnMap return_map(const HybridSystem& system, const Signature& signature, con
 
 PeriodicOrbit shoot(const HybridSystem& system, const Signature& signature, const VectorXd& guess, const VectorXd& par,
                     const ShootingOptions& options) {
+  const bool has_sizes = !are_usual(options.flow.sizes);
+  const VectorXd sizes = has_sizes ? options.flow.sizes : VectorXd(VectorXd::Ones(guess.size()));
   PeriodicOrbit orbit;
   orbit.start = guess;
   double last_step = INFINITY;
@@ -211,8 +213,10 @@ PeriodicOrbit shoot(const HybridSystem& system, const Signature& signature, cons
     }
     MatrixXd matrix = MatrixXd::Identity(residual.size(), residual.size()) - orbit.map.derivative;
     for (const Eigen::Index k : options.ignorable) matrix.row(k) = VectorXd::Unit(residual.size(), k).transpose();
-    const VectorXd step = -solve_with_complete_pivoting(matrix, residual);
-    last_step = step.lpNorm<Eigen::Infinity>() / (1.0 + orbit.start.lpNorm<Eigen::Infinity>());
+    const auto divide = sizes.cwiseInverse().asDiagonal();
+    const VectorXd in_sizes = -solve_with_complete_pivoting(divide * matrix * sizes.asDiagonal(), divide * residual);
+    const VectorXd step = sizes.cwiseProduct(in_sizes);
+    last_step = in_sizes.lpNorm<Eigen::Infinity>() / (1.0 + orbit.start.cwiseQuotient(sizes).lpNorm<Eigen::Infinity>());
     orbit.start += step;
     ++orbit.iterations;
     if (!orbit.start.allFinite()) {

@@ -91,7 +91,7 @@ ReturnMap return_map(const HybridSystem& system, const Signature& signature, con
 struct ShootingOptions {
   FlowOptions flow;
   int max_iterations = 20;
-  double tolerance = 1e-11;  ///< on |Newton step| / (1 + |x|), of the last step taken
+  double tolerance = 1e-11;  ///< on |Newton step| / (1 + |x|), of the last step taken, in sizes of states if known
   /// States that nothing depends on and that need not return (a position on an endless floor), from 0: kept at their
   /// start, and without an equation.
   std::vector<Eigen::Index> ignorable;

@@ -1,4 +1,5 @@
 #include "motion/simulation_run.hpp"
+#include "model/events.hpp"
 
 #include <limits>
 
@@ -78,8 +79,12 @@ void keep_independent(const HybridSystem& system, FunctionKind kind, const Vecto
     double no_parameters = 0.0;
     system.first(kind, index, x.data(), par.data(), {}, value.data(), dx.data(), &no_parameters);
     if (kind == FunctionKind::jump) dx -= MatrixXd::Identity(n, n);
+    constexpr double rounding = 1e-12;  // of derivatives that are differences, as a share of what a value is made of
+    const VectorXd sizes = (x.array() == 0.0).select(1.0, x.cwiseAbs());
+    const MatrixXd terms = dx.cwiseAbs() * sizes.asDiagonal();
+    const VectorXd least = rounding * (terms.rowwise().sum() + value.cwiseAbs());
     for (int c = 0; c < n; ++c)
-      if (!(dx.col(c).lpNorm<Eigen::Infinity>() <= 1e-12)) flags[static_cast<std::size_t>(c)] = false;
+      if (!(terms.col(c).array() <= least.array()).all()) flags[static_cast<std::size_t>(c)] = false;
   }
 }
 
@@ -88,6 +93,19 @@ void keep_independent(const HybridSystem& system, FunctionKind kind, const Vecto
 void Recurrence::add(const SimulatedSegment& segment) {
   ends_.push_back({segment.index, segment.after, segment.low, segment.high});
   if (ends_.size() > 2 * static_cast<std::size_t>(max_period_)) ends_.pop_front();
+}
+
+std::vector<bool> Recurrence::tiny_states() const {
+  constexpr double tiny = 1e-9;
+  VectorXd sizes = VectorXd::Zero(back(0).low.size());
+  for (const End& end : ends_) sizes = sizes.cwiseMax(end.low.cwiseAbs()).cwiseMax(end.high.cwiseAbs());
+  double largest = 0.0;
+  for (Eigen::Index i = 0; i < sizes.size(); ++i)
+    if (!is_ignored(ignorable_, i)) largest = std::max(largest, sizes(i));
+  std::vector<bool> flags(static_cast<std::size_t>(sizes.size()));
+  for (Eigen::Index i = 0; i < sizes.size(); ++i)
+    flags[static_cast<std::size_t>(i)] = !is_ignored(ignorable_, i) && sizes(i) <= tiny * largest;
+  return flags;
 }
 
 std::optional<int> Recurrence::period() const {
@@ -103,12 +121,14 @@ VectorXd Recurrence::scale(std::size_t segments) const {
     low = low.cwiseMin(back(i).low);
     high = high.cwiseMax(back(i).high);
   }
+  constexpr double share = 1e-3;
   VectorXd range = high - low;
   double largest = 0.0;
   for (Eigen::Index i = 0; i < range.size(); ++i)
     if (!is_ignored(ignorable_, i)) largest = std::max(largest, range(i));
-  // States that hardly move are compared on the scale of the others.
-  range.array() += 1e-3 * largest;
+  range += share * low.cwiseAbs().cwiseMax(high.cwiseAbs());
+  for (Eigen::Index i = 0; i < range.size(); ++i)
+    if (is_ignored(without_size_, i)) range(i) += share * largest;
   for (Eigen::Index i = 0; i < range.size(); ++i)
     if (is_ignored(ignorable_, i)) range(i) = std::numeric_limits<double>::infinity();
   return range;
@@ -246,12 +266,11 @@ SimulationResult run_simulation(HybridSimulation& simulation, const SimulationPl
 namespace {
 
 using Eigen::Index;
-using Eigen::RowVectorXd;
 
 constexpr double rounding = 1e-9;  // of real parts, relative to |f_x|
 constexpr std::size_t least_states = 4;
-constexpr double no_movement = 1e-3;  // relative to 1 + |x|
-constexpr double there = 1e-8;        // distance that integration cannot tell from zero, relative to 1 + |x|
+constexpr double no_movement = 1e-3;  // relative to the sizes of the states
+constexpr double there = 1e-8;        // distance that integration cannot tell from zero, likewise
 constexpr double at_surface = 1e-6;   // the same from the surface of an event
 constexpr double least_fall = 1e-3;   // of distances, relative to the last one
 
@@ -264,11 +283,12 @@ std::optional<VectorXd> attracting_equilibrium(const HybridSystem& system, int f
   return attracts ? std::optional(found->state) : std::nullopt;
 }
 
-bool is_on_surface(const HybridSystem& system, int event, const VectorXd& x, const VectorXd& par) {
-  double h = 0.0;
-  RowVectorXd gradient(x.size());
-  system.first(FunctionKind::event, event, x.data(), par.data(), {}, &h, gradient.data(), nullptr);
-  return std::abs(h) <= at_surface * (1.0 + x.norm()) * gradient.norm();
+/// d in sizes of the states.
+double in_sizes(const VectorXd& d, const VectorXd& sizes) {
+  double sum = 0.0;
+  for (Index i = 0; i < d.size(); ++i)
+    if (d(i) != 0.0) sum += std::pow(d(i) / sizes(i), 2);
+  return std::sqrt(sum);
 }
 
 /// Of falling distances.
@@ -283,31 +303,35 @@ bool fall_to_zero(const std::vector<double>& distances) {
 }  // namespace
 
 std::optional<VectorXd> reached_equilibrium(const HybridSystem& system, const SimulatedSegment& last,
-                                            const VectorXd& par, const std::vector<Index>& ignorable) {
+                                            const VectorXd& par, const std::vector<Index>& ignorable,
+                                            const VectorXd& sizes) {
   const int field = last.mode.field();
   VectorXd f(last.end.size());
   system.value(FunctionKind::field, field, last.end.data(), par.data(), f.data());
   for (const Index k : ignorable) f(k) = 0.0;
-  if (!(f.norm() * last.duration <= no_movement * (1.0 + last.end.norm()))) return std::nullopt;
+  if (!(in_sizes(f * last.duration, sizes) <= no_movement)) return std::nullopt;
   return attracting_equilibrium(system, field, last.end, par, ignorable);
 }
 
 std::optional<VectorXd> approached_equilibrium(const HybridSystem& system, const IndexVector& index,
                                                const std::vector<VectorXd>& states, std::size_t least,
-                                               const VectorXd& par, const std::vector<Index>& ignorable) {
+                                               const VectorXd& par, const std::vector<Index>& ignorable,
+                                               const VectorXd& sizes) {
   if (states.size() < least_states) return std::nullopt;
   const std::optional<VectorXd> rest = attracting_equilibrium(system, index.field, states.back(), par, ignorable);
-  if (!rest || !is_on_surface(system, index.event, *rest, par)) return std::nullopt;
-  const double nothing = there * (1.0 + rest->norm());
+  if (!rest) return std::nullopt;
+  const EventAt at = event_at(system, index.event, rest->data(), par.data());
+  if (!(std::abs(at.h) <= at_surface * at.scale(rest->data(), sizes))) return std::nullopt;
   std::vector<double> falling;  // the last distances, as long as each is smaller than the one before it, or nothing
   for (const VectorXd& state : states) {
     VectorXd d = state - *rest;
     for (const Index k : ignorable) d(k) = 0.0;
-    if (!falling.empty() && !(d.norm() < falling.back()) && !(d.norm() <= nothing)) falling.clear();
-    falling.push_back(d.norm());
+    const double distance = in_sizes(d, sizes);
+    if (!falling.empty() && !(distance < falling.back()) && !(distance <= there)) falling.clear();
+    falling.push_back(distance);
   }
   if (falling.size() < std::max(least_states, least)) return std::nullopt;
-  return falling.back() <= nothing || fall_to_zero(falling) ? rest : std::nullopt;
+  return falling.back() <= there || fall_to_zero(falling) ? rest : std::nullopt;
 }
 
 }  // namespace tchat

@@ -82,6 +82,10 @@ class Recurrence {
   Recurrence(int max_period, double tolerance) : max_period_(max_period), tolerance_(tolerance) {}
 
   void ignore(const std::vector<bool>& ignorable) { ignorable_ = ignorable; }
+  /// States that are nothing but rounding of zero (StateSizes), one entry for each; empty: none.
+  void take_for_rounding(const std::vector<bool>& states) { without_size_ = states; }
+  /// Which states are so small, in all segments looked at, that they may be rounding?
+  std::vector<bool> tiny_states() const;
   /// A segment that ended in an event.
   void add(const SimulatedSegment& segment);
   /// The smallest period in segments.
@@ -94,7 +98,8 @@ class Recurrence {
   bool repeats_events(std::size_t period) const;
   /// Largest difference of the last `period` states from those before them, in units of scale(2 period).
   double difference(std::size_t period) const;
-  /// Range of each state over the last segments, at least 1e-3 of the largest; infinite where a state is ignored.
+  /// Range of each state over the last segments and 1e-3 of its largest value, of rounding 1e-3 of the largest range;
+  /// infinite where a state is ignored.
   Eigen::VectorXd scale(std::size_t segments) const;
 
  private:
@@ -108,7 +113,7 @@ class Recurrence {
 
   int max_period_;
   double tolerance_;
-  std::vector<bool> ignorable_;
+  std::vector<bool> ignorable_, without_size_;
   std::deque<End> ends_;  // the last 2 max_period
 };
 
@@ -156,10 +161,11 @@ SimulationResult run_simulation(HybridSimulation& simulation, const SimulationPl
 
 /// An equilibrium whose f_x has no eigenvalue with a positive real part, found by Newton's method from the end of a
 /// motion that has had no event for so long (SegmentEnd::no_event) that its speed times that duration is nothing.
-/// States that nothing depends on (`ignorable`, from 0) keep their values, and may move.
+/// States that nothing depends on (`ignorable`, from 0) keep their values, and may move. `sizes`: of the states.
 std::optional<Eigen::VectorXd> reached_equilibrium(const HybridSystem& system, const SimulatedSegment& last,
                                                    const Eigen::VectorXd& par,
-                                                   const std::vector<Eigen::Index>& ignorable);
+                                                   const std::vector<Eigen::Index>& ignorable,
+                                                   const Eigen::VectorXd& sizes);
 
 /// Such an equilibrium that states at events of one kind, in the order of time, converge to: each of the last `least`
 /// of them, or of more, is nearer than the one before it, or there to 1e-8. The surface of the event goes through it,
@@ -170,6 +176,7 @@ std::optional<Eigen::VectorXd> reached_equilibrium(const HybridSystem& system, c
 std::optional<Eigen::VectorXd> approached_equilibrium(const HybridSystem& system, const IndexVector& index,
                                                       const std::vector<Eigen::VectorXd>& states, std::size_t least,
                                                       const Eigen::VectorXd& par,
-                                                      const std::vector<Eigen::Index>& ignorable);
+                                                      const std::vector<Eigen::Index>& ignorable,
+                                                      const Eigen::VectorXd& sizes);
 
 }  // namespace tchat

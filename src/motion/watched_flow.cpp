@@ -43,13 +43,15 @@ double last_change(double a, double b, const std::function<double(double)>& f) {
 }  // namespace
 
 EventWatch::EventWatch(const HybridSystem& system, int field, const std::vector<int>& events, const VectorXd& par,
-                       const double* x0, double tolerance, const std::vector<int>& after)
-    : system_(system), field_(field), par_(par), f_(system.dimension()), h_x_(f_.size()) {
+                       const double* x0, const FlowOptions& options, const std::vector<int>& after)
+    : system_(system), field_(field), par_(par), sizes_(options.sizes), f_(system.dimension()), h_x_(f_.size()) {
+  const double tolerance = options.surface_tolerance;
   for (const int event : events) {
     const Value start = at(event, x0);
     const bool is_after = std::find(after.begin(), after.end(), event) != after.end();
-    const double around = is_after ? std::max(tolerance, std::abs(start.h) / start.scale) : tolerance;
-    const bool on_surface = std::abs(start.h) <= around * start.scale;
+    const bool is_near = std::abs(start.h) <= tolerance * start.scale;
+    const double around = is_after && !is_near ? std::abs(start.h) / start.scale : tolerance;
+    const bool on_surface = is_after || is_near;
     Readiness readiness = start.h > 0.0 ? Readiness::armed : Readiness::below;
     if (on_surface) readiness = start.rate > 0.0 ? Readiness::leaving_upwards : Readiness::below;
     events_.push_back({event, readiness, start.h, start.rate, around});
@@ -65,7 +67,10 @@ EventWatch::Value EventWatch::on_field(int event, const double* x) const {
   system_.first(FunctionKind::event, event, x, par_.data(), {}, &value.h, h_x_.data(), nullptr);
   const double rate = h_x_.dot(f_);
   value.rate = std::isfinite(rate) ? rate : 0.0;
-  value.scale = 1.0 + h_x_.norm() * Eigen::Map<const VectorXd>(x, h_x_.size()).norm();
+  const Eigen::Map<const VectorXd> state(x, h_x_.size());
+  const double scale =
+      sizes_.size() == 0 ? h_x_.norm() * (1.0 + state.norm()) : h_x_.cwiseAbs().dot(state.cwiseAbs().cwiseMax(sizes_));
+  value.scale = scale > 0.0 ? scale : 1.0;  // no gradient: a problem that does not give the one it says it has
   return value;
 }
 
@@ -157,6 +162,18 @@ void EventWatch::look_again_from(double time, const DenseOutput& state) {
   }
 }
 
+namespace {
+
+constexpr double no_size = 1e-100;
+
+}  // namespace
+
+bool are_usual(const Eigen::VectorXd& sizes) {
+  constexpr double alike = 64.0;
+  return std::all_of(sizes.begin(), sizes.end(),
+                     [](double size) { return size <= no_size || (size <= alike && size >= 1.0 / alike); });
+}
+
 std::unique_ptr<WatchedFlow> make_flow(const HybridSystem& system, int field, const Eigen::VectorXd& x0,
                                        const Eigen::VectorXd& par, const FlowOptions& options) {
   if (options.method == IntegrationMethod::runge_kutta)
@@ -204,9 +221,18 @@ struct RungeKuttaFlow::Implementation {
         par(p),
         options(o),
         start(x0.begin(), x0.end()),
-        stepper(odeint::make_dense_output(o.absolute_tolerance, o.relative_tolerance, DormandPrince())),
+        stepper(odeint::make_dense_output(absolute_tolerance(o), o.relative_tolerance, DormandPrince())),
         dense(start),
         single_state(start) {}
+
+  /// A share of the smallest state whose size is known, where that is small.
+  static double absolute_tolerance(const FlowOptions& options) {
+    if (are_usual(options.sizes)) return options.absolute_tolerance;
+    double smallest = 1.0;
+    for (const double size : options.sizes)
+      if (size > no_size) smallest = std::min(smallest, size);
+    return options.absolute_tolerance * smallest;
+  }
 
   auto right_hand_side() {
     return [this](const DopriState& x, DopriState& dxdt, double) {
@@ -229,8 +255,14 @@ struct RungeKuttaFlow::Implementation {
     right_hand_side()(start, dense, 0.0);
     const Eigen::Map<const VectorXd> x(start.data(), static_cast<Eigen::Index>(start.size()));
     const Eigen::Map<const VectorXd> f(dense.data(), x.size());
-    const double speed = f.norm();
-    return speed > 0.0 ? 0.01 * std::max(x.norm(), 1e-3) / speed : 0.01;
+    if (are_usual(options.sizes)) {
+      const double speed = f.norm();
+      return speed > 0.0 ? 0.01 * std::max(x.norm(), 1e-3) / speed : 0.01;
+    }
+    double fastest = 0.0;  // in sizes a unit of time
+    for (Eigen::Index i = 0; i < f.size(); ++i)
+      if (options.sizes(i) > 0.0) fastest = std::max(fastest, std::abs(f(i)) / options.sizes(i));
+    return fastest > 0.0 ? 0.01 / fastest : 0.01;
   }
 
   double reached() const { return steps == 0 ? 0.0 : stepper.current_time(); }
@@ -259,7 +291,7 @@ struct RungeKuttaFlow::Implementation {
     if (++steps > options.max_steps)
       return fmt::format("more than {} steps; a stiff problem wants --stiff", options.max_steps);
     const double length = stepper.current_time() - stepper.previous_time();
-    if (!(length > smallest_step * (1.0 + stepper.current_time())))
+    if (!(length > smallest_step * stepper.current_time()))
       return not_evaluated.empty() ? "the steps become too small" : not_evaluated;
     const DopriState& x = stepper.current_state();
     if (!all_finite(x.data(), static_cast<int>(x.size()))) return "the state is not finite";
@@ -348,7 +380,7 @@ RungeKuttaFlow::~RungeKuttaFlow() = default;
 
 void RungeKuttaFlow::watch(const std::vector<int>& events, const std::vector<int>& after) {
   p_->events = events;
-  p_->watch.emplace(p_->system, p_->field, events, p_->par, p_->start.data(), p_->options.surface_tolerance, after);
+  p_->watch.emplace(p_->system, p_->field, events, p_->par, p_->start.data(), p_->options, after);
 }
 
 void RungeKuttaFlow::on_piece(std::function<bool(double, double)> observer) { p_->observer = std::move(observer); }

@@ -29,7 +29,8 @@ struct FlowOptions {
   double absolute_tolerance = 1e-16;
   double max_duration = 1e3;        ///< give up waiting for an event after this time
   long max_steps = 100000;          ///< of the integrator, for one segment
-  double surface_tolerance = 1e-9;  ///< |h| / (1 + |h_x| |x|) below this: the start is on the event surface
+  double surface_tolerance = 1e-9;  ///< |h| below this share of its scale: the start is on the event surface
+  Eigen::VectorXd sizes = {};       ///< of the states, n; none: 1 (EventAt::scale())
   bool variational = true;          ///< integrate the flow Jacobian along
   std::vector<int> active;          ///< PAR indices, from 1, by which derivatives are wanted (needs `variational`)
 };
@@ -62,11 +63,11 @@ class EventWatch {
     double time = 0.0;
   };
 
-  /// A view of `system` and `par`, which outlive this object. `tolerance` on |h| / (1 + |h_x| |x|) says what is on the
-  /// surface at the start x0 (time 0); of the events `after`, which have just happened, the start is on the surface
+  /// A view of `system` and `par`, which outlive this object. |h| up to options.surface_tolerance times its scale is on
+  /// the surface at the start x0 (time 0); of the events `after`, which have just happened, the start is on the surface
   /// whatever h.
   EventWatch(const HybridSystem& system, int field, const std::vector<int>& events, const Eigen::VectorXd& par,
-             const double* x0, double tolerance, const std::vector<int>& after = {});
+             const double* x0, const FlowOptions& options, const std::vector<int>& after = {});
 
   int count() const { return static_cast<int>(events_.size()); }
   /// h_j and then h_x f of every event: 2 count() values, falling and rising through zero at what is looked for. False
@@ -98,7 +99,7 @@ class EventWatch {
     int event;
     Readiness readiness;
     double h, rate;    // at the time last looked at
-    double tolerance;  // |h| / (1 + |h_x| |x|) up to this has not risen
+    double tolerance;  // |h| up to this share of its scale has not risen
   };
 
   /// When this event falls in (time_, end], where its h and rate are now those given; updates its readiness.
@@ -109,6 +110,7 @@ class EventWatch {
   const HybridSystem& system_;
   int field_;
   const Eigen::VectorXd& par_;
+  Eigen::VectorXd sizes_;
   double time_ = 0.0;
   std::vector<Watched> events_;
   // What is looked at at every step is kept here.
@@ -157,6 +159,9 @@ class WatchedFlow {
   /// Why advance() failed.
   virtual const std::string& message() const = 0;
 };
+
+/// Are sizes of states, as far as they are known, such that absolute tolerances need not heed them: from 1/64 to 64?
+bool are_usual(const Eigen::VectorXd& sizes);
 
 /// By the method that `options` name. A view of `system`, which outlives the flow; `par` has the room of the problem's
 /// ParameterLayout.

@@ -469,7 +469,7 @@ BranchPointBreaking branch_point_breaking(const DefiningSystem& system, const Or
   BranchPointBreaking result{true, {}};
   for (int k = 0; k < parameters; ++k) {
     map.parameter_column(condensed, x, k, column.data());
-    column *= 1.0 + std::abs(x.par(system.free_parameters()[static_cast<std::size_t>(k)] - 1));
+    column *= parameter_size(system, x, k);
     result.shares.push_back(std::abs(psi.dot(column)) / (psi.norm() * (column.norm() + least)));
   }
   return result;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "model/hybrid_system.hpp"
+#include "model/scales.hpp"
 #include "orbit/collocation_rule.hpp"
 #include "orbit/orbit.hpp"
 
@@ -123,6 +124,19 @@ class DefiningSystem {
   std::vector<int> free_parameters_;
   std::vector<bool> contact_segments_;
 };
+
+/// The size of free parameter g, from 0, of x, against which a change of it is small.
+inline double parameter_size(const DefiningSystem& system, const Orbit& x, int g) {
+  const int k = system.free_parameters()[static_cast<std::size_t>(g)];
+  return system.system().parameter_size(k, x.par(k - 1));
+}
+
+/// Durations of x are small against this and their own: 1 where one return of the orbits takes a time of ordinary size,
+/// else that time.
+inline double time_size(const DefiningSystem& system, const Orbit& x) {
+  const double turn = x.par.durations(x.shape.segments).cwiseAbs().sum() / system.orbits();
+  return is_ordinary(turn) ? 1.0 : turn;
+}
 
 // The rows that tie the ends of segments together, as a problem type gives them to the condensed system.
 

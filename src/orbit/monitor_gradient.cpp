@@ -49,7 +49,7 @@ bool ReducedGradient::evaluate(const Orbit& x) {
     derivatives_.row(r) = row_.globals.transpose() - adjoint_[i].transpose() * columns;
     terms_.row(r) = row_.globals.cwiseAbs().transpose() + adjoint_[i].cwiseAbs().transpose() * columns.cwiseAbs();
     for (Eigen::Index k = 0; k < terms_.cols(); ++k)
-      terms_(r, k) += std::abs(q) / (1.0 + std::abs(x.par(system_.free_parameters()[static_cast<std::size_t>(k)] - 1)));
+      terms_(r, k) += std::abs(q) / parameter_size(system_, x, static_cast<int>(k));
   }
   why_none_ = "a derivative of a monitor is not finite";
   if (!derivatives_.allFinite()) return false;
@@ -104,7 +104,8 @@ double ReducedGradient::relative_change(const Orbit& x, const OrbitVector& y) co
   double largest = 0.0;
   for (Eigen::Index k = 0; k < y.globals.size(); ++k) {
     const double p = std::abs(x.par(system_.free_parameters()[static_cast<std::size_t>(k)] - 1));
-    largest = std::max(largest, std::abs(y.globals(k)) / (p > least ? p : 1.0));
+    const double known = parameter_size(system_, x, static_cast<int>(k)) - p;
+    largest = std::max(largest, std::abs(y.globals(k)) / (p > least * known ? p : known));
   }
   return largest;
 }
@@ -114,16 +115,15 @@ double ReducedGradient::distance(const Orbit& x, int k) {
   const OrbitVector& y = tangent(k);
   const double second = dot(second_row_, y);
   if (!(std::abs(second) > noise * dot_of_sizes(second_row_, y))) return std::numeric_limits<double>::infinity();
-  const double p = x.par(system_.free_parameters()[static_cast<std::size_t>(k)] - 1);
-  return std::abs(values_(k) / second) / (1.0 + std::abs(p));
+  return std::abs(values_(k) / second) / parameter_size(system_, x, k);
 }
 
 void ReducedGradient::derivative(const Orbit& x, int k, OrbitVector& row) {
   constexpr double share = 2e-3;  // of the orbit's size: the fifth root of rounding, about
   const OrbitVector& y = tangent(k);
-  const double size =
-      std::max({y.states.cwiseAbs().maxCoeff() / (1.0 + x.states.cwiseAbs().maxCoeff()),
-                y.durations.cwiseAbs().maxCoeff() / (1.0 + std::abs(x.period())), relative_change(x, y)});
+  const double size = std::max({y.states.cwiseAbs().maxCoeff() / (1.0 + x.states.cwiseAbs().maxCoeff()),
+                                y.durations.cwiseAbs().maxCoeff() / (time_size(system_, x) + std::abs(x.period())),
+                                relative_change(x, y)});
   const double step = share / size;
   row.set_zero();
   add_monitor_gradient(x, y, step, 8.0 / (12.0 * step), row);

@@ -148,6 +148,10 @@ inline constexpr double orbit_accuracy = 1e-9;
 /// is and small, what a change of the state by its own size makes of h.
 double event_scale(const HybridSystem& system, const Orbit& x, int event);
 
+/// The sizes of its states (StateSizes, by the functions of the segments of this signature, which the orbit may run
+/// through more than once).
+Eigen::VectorXd state_sizes(const HybridSystem& system, const Signature& signature, const Orbit& x);
+
 /// How well states of the orbit are known, n entries: orbit_accuracy times the largest |x_k| over the orbit, and not
 /// less than rounding of the largest of all states, for a state that is zero throughout shows nothing but rounding.
 Eigen::VectorXd state_uncertainty(const Orbit& x);

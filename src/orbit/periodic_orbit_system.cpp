@@ -103,8 +103,8 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// Changes of H, relative to its gradient and how fast the state moves, and absolutely, that derivatives by differences
-/// and orbits that are solved to the usual tolerances make.
+/// Changes of H, relative to its gradient and how fast the state moves, and to its value and to what a state of size 1
+/// makes of it, that derivatives by differences and orbits that are solved to the usual tolerances make.
 constexpr double relative_rounding = 1e-5;
 constexpr double least_change = 1e-9;
 /// The same of its mean slope on the way from the start of a segment, relative to its gradient. Near a kink of H the
@@ -222,7 +222,7 @@ std::string ConservativeOrbitSystem::why_not_constant_on(int s, const Orbit& x) 
     const double way = (Eigen::Map<const VectorXd>(state, dimension()) - start).norm();
     const bool is_rounding = std::abs(here - at_start) <= least_slope * gradient.norm() * way ||
                              std::abs(rate) <= relative_rounding * gradient.norm() * flow.norm() ||
-                             std::abs(rate * x.duration(s)) <= least_change * (1.0 + std::abs(here));
+                             std::abs(rate * x.duration(s)) <= least_change * (gradient.norm() + std::abs(here));
     if (!is_rounding)
       return fmt::format("{} it changes at the rate {:.3g} where it is {:.6g}", segment_name(s), rate, here);
   }
@@ -237,7 +237,7 @@ std::string ConservativeOrbitSystem::why_not_kept_by_jump(int s, const Orbit& x)
   const Eigen::Map<const VectorXd> end(x.end(s), dimension()), after(after_.data(), dimension());
   const double slope = Eigen::Map<const VectorXd>(gradient_.data(), dimension()).norm();
   const bool is_rounding = std::abs(change) <= relative_rounding * slope * (end.norm() + after.norm()) ||
-                           std::abs(change) <= least_change * (1.0 + std::abs(before));
+                           std::abs(change) <= least_change * (slope + std::abs(before));
   return is_rounding ? "" : fmt::format("it changes by {:.3g} {}", change, jump_name(s));
 }
 

@@ -60,7 +60,7 @@ QuantityFunction::QuantityFunction(const HybridSystem& system, Quantity quantity
 double QuantityFunction::value(const double* x, const double* par) const {
   switch (quantity_.kind) {
     case Quantity::Kind::state:
-      return x[quantity_.index - 1];
+      return system_->unit_of(quantity_.index) * x[quantity_.index - 1];
     case Quantity::Kind::event:
       return system_->event(quantity_.index, x, par);
     default:
@@ -79,8 +79,8 @@ double QuantityFunction::first(const double* x, const double* par, double* by_st
   std::fill_n(by_state, n, 0.0);
   std::fill_n(by_parameter, active_.size(), 0.0);
   if (quantity_.kind == Quantity::Kind::state) {
-    by_state[quantity_.index - 1] = 1.0;
-    return x[quantity_.index - 1];
+    by_state[quantity_.index - 1] = system_->unit_of(quantity_.index);
+    return value(x, par);
   }
   std::copy_n(x, n, state_.begin());
   std::copy_n(par, par_.size(), par_.begin());

@@ -108,6 +108,7 @@ class NodalSystem {
  public:
   /// The system outlives this object; its terminal events are the sections of the return map.
   NodalSystem(const DefiningSystem& system, const OrbitShape& shape);
+  const DefiningSystem& system() const { return system_; }
 
   /// M(mu) and the columns of the parameters at x. False where M is singular or not finite.
   bool factorize(const Orbit& x, double mu = 1.0);

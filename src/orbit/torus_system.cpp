@@ -123,7 +123,7 @@ bool is_angle(const HybridSystem& system, const Signature& one_return, const Mat
   for (Index k = 0; k < samples.cols(); ++k) {
     const VectorXd x = samples.col(k);
     VectorXd further = x;
-    further(state) += whole_angle;
+    further(state) += whole_angle / system.unit_of(static_cast<int>(state) + 1);
     for (const IndexVector& index : one_return)
       if (!is_blind(system, index, x, further, par)) return false;
   }
@@ -174,12 +174,13 @@ TorusWinding torus_winding(const HybridSystem& system, const Signature& one_retu
   VectorXd end = function_value(system, FunctionKind::jump, one_return.back().jump,
                                 Eigen::Map<const VectorXd>(x.end(static_cast<int>(m) - 1), n), par);
   for (const Index state : angle_states(system, one_return, curve, par)) {
-    const double w = likely_winding(curve.row(state));
+    const double unit = system.unit_of(static_cast<int>(state) + 1);
+    const double w = likely_winding(unit * curve.row(state)) / unit;
     double target = w * rho;
     for (Index l = 0; l < orbits; ++l)
       target += weights(l) * (curve(state, l) - w * static_cast<double>(l) / static_cast<double>(orbits));
     winding.curve(state) = w;
-    winding.returns(state) = whole_angle * std::round((end(state) - target) / whole_angle);
+    winding.returns(state) = whole_angle / unit * std::round((end(state) - target) * unit / whole_angle);
   }
   return winding;
 }

@@ -72,7 +72,7 @@ void attach_follower(BranchSetup& setup, std::unique_ptr<OrbitCondition> conditi
   const RunSettings& settings = setup.settings;
   check_memory(start.shape, setup.defining->free_count());
   setup.follower = std::make_unique<PathFollower>(
-      *setup.defining, start.shape, weighted_norm(settings), newton_settings(settings),
+      *setup.defining, start.shape, weighted_norm(settings, start), newton_settings(settings),
       settings.free_parameters.front(), std::move(condition), branch_monitors(*setup.defining, settings, start));
 }
 

@@ -111,6 +111,20 @@ Bifurcation double_without_section(const DefiningSystem& defining, const PathPoi
   return result;
 }
 
+/// Turns the direction so that DS > 0 has a meaning: the first free parameter, else duration, else state at the start
+/// of the orbit, that changes along it grows.
+void orient(const HybridSystem& system, const Orbit& x, OrbitVector& v) {
+  constexpr double rounding = 1e-4;  // of the largest one: a branch point is known to about the root of rounding
+  std::vector<double> changes(v.globals.begin(), v.globals.end());
+  changes.insert(changes.end(), v.durations.begin(), v.durations.end());
+  for (int a = 0; a < x.shape.dimension; ++a) changes.push_back(system.unit_of(a + 1) * v.states(a, 0));
+  double largest = 0.0;
+  for (const double c : changes) largest = std::max(largest, std::abs(c));
+  const auto first =
+      std::find_if(changes.begin(), changes.end(), [&](double c) { return std::abs(c) > rounding * largest; });
+  if (first != changes.end() && *first < 0.0) v.scale(-1.0);
+}
+
 /// The orbit twice over; the critical vector changes sign after one period (5.21).
 Bifurcation double_at(PathFollower& follower, const DefiningSystem& defining, const PathPoint& point) {
   const Orbit& x = point.orbit;
@@ -144,27 +158,13 @@ Bifurcation double_at(PathFollower& follower, const DefiningSystem& defining, co
   return result;
 }
 
-/// Turns the direction so that DS > 0 has a meaning: the first free parameter, else duration, else state at the start
-/// of the orbit, that changes along it grows.
-void orient(const Orbit& x, OrbitVector& v) {
-  constexpr double rounding = 1e-4;  // of the largest one: a branch point is known to about the root of rounding
-  std::vector<double> changes(v.globals.begin(), v.globals.end());
-  changes.insert(changes.end(), v.durations.begin(), v.durations.end());
-  for (int a = 0; a < x.shape.dimension; ++a) changes.push_back(v.states(a, 0));
-  double largest = 0.0;
-  for (const double c : changes) largest = std::max(largest, std::abs(c));
-  const auto first =
-      std::find_if(changes.begin(), changes.end(), [&](double c) { return std::abs(c) > rounding * largest; });
-  if (first != changes.end() && *first < 0.0) v.scale(-1.0);
-}
-
 /// The null vector of the problem bordered by the tangent of the known branch: any right-hand side brings it out of the
 /// nearly singular matrix.
 Bifurcation branch_at(PathFollower& follower, const PathPoint& point) {
   CondensedSystem& condensed = follower.condensed();
   OrbitVector crossing = condensed.make_vector();
   if (condensed.system().find_crossing_branch(point.orbit, point.tangent, crossing)) {
-    orient(point.orbit, crossing);
+    orient(condensed.system().system(), point.orbit, crossing);
     return {point.orbit, crossing, point.tangent};
   }
   OrbitResidual residual = condensed.make_residual();
@@ -185,7 +185,7 @@ Bifurcation branch_at(PathFollower& follower, const PathPoint& point) {
   v.states -= along * point.tangent.states;
   v.durations -= along * point.tangent.durations;
   v.globals -= along * point.tangent.globals;
-  orient(point.orbit, v);
+  orient(condensed.system().system(), point.orbit, v);
   return {point.orbit, v, point.tangent};
 }
 

@@ -13,6 +13,7 @@
 #include "files/auto_format.hpp"
 #include "files/solution_file.hpp"
 #include "model/parameter_vector.hpp"
+#include "run/own_units.hpp"
 #include "run/solver_settings.hpp"
 #include "settings/point_type.hpp"
 #include "settings/problem_type.hpp"
@@ -59,7 +60,8 @@ BranchWriter::BranchWriter(const HybridSystem& system, const CollocationRule& ru
       section_(first_section(system, setup)),
       outputs_(branch_outputs(section_, files, screen, terminal)),
       weights_(state_weights(section_.settings)),
-      last_label_(setup.last_label) {}
+      last_label_(setup.last_label),
+      units_(setup.units) {}
 
 void BranchWriter::begin_section(int branch, double step, std::vector<NewtonIteration> correction) {
   section_.branch = branch;
@@ -121,6 +123,13 @@ double BranchWriter::column_value(const PointColumn& column, const BranchPoint& 
 }
 
 void BranchWriter::point(const BranchPoint& point) {
+  if (units_.size() == 0) return write(point);
+  const PathPoint path = in_users_units(point.path, units_);
+  write({point.number, point.special, path, point.multipliers, point.violations, point.estimated_error,
+         point.newton_iterations, point.newton, point.step, point.tests, point.details, point.remark});
+}
+
+void BranchWriter::write(const BranchPoint& point) {
   line_.branch = section_.branch;
   line_.point = point.number;
   line_.stable = shown_stable(point);

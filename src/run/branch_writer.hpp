@@ -24,6 +24,7 @@ class BranchWriter final : public BranchSink {
     std::vector<int> active_parameters;
     int curve_type = 0;  ///< tens digit of type numbers on two-parameter curves
     int last_label = 0;
+    Eigen::VectorXd units = {};  ///< of the states of points, in those of `system`; none: all are 1
   };
 
   /// Arguments: see branch_outputs().
@@ -62,6 +63,7 @@ class BranchWriter final : public BranchSink {
   void find_column_values(const BranchPoint& point);
   double column_value(const PointColumn& column, const BranchPoint& point) const;
   std::string place(const PointLine& line) const;
+  void write(const BranchPoint& point);
   bool shown_stable(const BranchPoint& point);
   void report_unknown_user_values(const PointLine& line);
   void show_message(const std::string& text);
@@ -76,6 +78,7 @@ class BranchWriter final : public BranchSink {
   Eigen::VectorXd weights_;
   std::vector<Labelled> labels_;
   int last_label_;
+  Eigen::VectorXd units_;
   bool last_stable_ = false;
   std::set<int> reported_user_functions_;
 };

@@ -120,8 +120,8 @@ bool is_label(const SelectedStart& selected, PointType type) {
 /// The equilibrium of the label, corrected; at a zero-Hopf point, where f_x is singular, as it is stored.
 Orbit equilibrium_of(const EquilibriumSystem& equilibria, const RunSettings& settings, const SelectedStart& selected) {
   if (is_label(selected, PointType::zero_hopf)) return selected.start.orbit;
-  PathFollower along(equilibria, selected.start.orbit.shape, weighted_norm(settings), newton_settings(settings),
-                     settings.free_parameters.front());
+  PathFollower along(equilibria, selected.start.orbit.shape, weighted_norm(settings, selected.start.orbit),
+                     newton_settings(settings), settings.free_parameters.front());
   return first_point(along, equilibria, selected, settings).point.orbit;
 }
 

@@ -17,6 +17,7 @@
 #include "run/branch_setup.hpp"
 #include "run/branch_writer.hpp"
 #include "run/orbit_start.hpp"
+#include "run/own_units.hpp"
 #include "run/run_remarks.hpp"
 #include "run/solver_settings.hpp"
 #include "settings/constants_file.hpp"
@@ -168,18 +169,22 @@ SelectedStart start_of(const RunRequest& request, const Problem& problem, const 
 }
 
 /// The first point, checked before any file is touched.
-BranchSetup first_branch(const Problem& problem, const SelectedStart& selected, const Reports& reports) {
-  BranchSetup setup = set_up_branch(problem.system(), problem.settings, selected);
+BranchSetup first_branch(const OwnUnits& own, const Reports& reports) {
+  BranchSetup setup = set_up_branch(own.system(), own.settings, own.start);
   reports.warn_of(setup.start.note);
   const RunSettings& written = setup.constants ? *setup.constants : setup.settings;
-  reports.warn_of(unwatched_events(problem.system(), written, setup.start.point.orbit));
+  reports.warn_of(unwatched_events(own.system(), written, setup.start.point.orbit));
   return setup;
 }
 
-ContinuationSettings continuation_of(const RunRequest& request, const BranchSetup& setup, const SelectedStart& selected,
-                                     const HybridSystem& system, const std::function<bool()>& interrupted) {
+ContinuationSettings continuation_of(const RunRequest& request, const BranchSetup& setup, const OwnUnits& own,
+                                     const Problem& problem, const std::function<bool()>& interrupted) {
+  const HybridSystem& system = problem.system();
+  const SelectedStart& selected = own.start;
   ContinuationSettings continuation = continuation_settings(setup.settings);
   continuation.clip = request.clip;
+  continuation.state_weights = state_weights(problem.settings);
+  continuation.state_units = own.units;
   continuation.principal_name = parameter_name(system, setup.settings, continuation.principal);
   for (const BoundedValue& bounded : setup.settings.bounds)
     continuation.further_bounds.push_back({bounded.parameter, parameter_name(system, setup.settings, bounded.parameter),
@@ -304,10 +309,12 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   refuse_to_replace_start(request, selected, output);
   RunFiles files(output, request.append ? RunFiles::Mode::append : RunFiles::Mode::replace);
   files.check_writable();
-  const BranchSetup setup = first_branch(problem, selected, reports);
-  const ContinuationSettings continuation = continuation_of(request, setup, selected, system, interrupted);
+  const OwnUnits own = in_own_units(system, problem.settings, selected);
+  const BranchSetup setup = first_branch(own, reports);
+  const ContinuationSettings continuation = continuation_of(request, setup, own, problem, interrupted);
 
   RunSettings constants = setup.constants.value_or(setup.settings);
+  constants.state_weights = problem.settings.state_weights;
   constants.problem = problem_to_record(problem.name, output_path('r', output));
   files.open(positional_text(constants));  // only now are files touched
   if (reports.table != nullptr)
@@ -315,8 +322,8 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
                    << direction_text(setup, selected, continuation.principal_name);
   const int last_label = request.append ? std::max(files.last_label(), 0) : selected.last_label;
   BranchWriter writer(system, setup.follower->condensed().rule(),
-                      {constants, active_parameters(constants), setup.type->facts().curve, last_label}, files,
-                      reports.table, reports.table != nullptr ? progress : nullptr);
+                      {constants, active_parameters(constants), setup.type->facts().curve, last_label, own.units},
+                      files, reports.table, reports.table != nullptr ? progress : nullptr);
 
   const NextCommand next = [&](const BranchWriter::Labelled& label) {
     return next_command({label.label, label.number, label.kind, setup.type->facts().curve}, constants, system,
@@ -347,9 +354,9 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
     const std::size_t labels_before = writer.labels().size();
     BranchSetup other_side;
     if (is_other_branch) {  // the two sides of a bifurcation are different branches
-      RunSettings against = problem.settings;
+      RunSettings against = own.settings;
       against.step = -against.step;
-      other_side = set_up_branch(system, against, selected);
+      other_side = set_up_branch(own.system(), against, own.start);
     }
     report(Direction(is_other_branch ? other_side : setup, reversed(continuation), branch + 1)
                .follow(writer, other_side.start.correction, {}),

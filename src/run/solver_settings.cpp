@@ -10,6 +10,7 @@
 
 #include "base/messages.hpp"
 #include "model/events.hpp"
+#include "model/scales.hpp"
 #include "plugin/problem_setup.hpp"
 #include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"
@@ -174,9 +175,10 @@ Eigen::VectorXd state_weights(const RunSettings& settings) {
   return weights;
 }
 
-WeightedNorm weighted_norm(const RunSettings& settings) {
+WeightedNorm weighted_norm(const RunSettings& settings, const Orbit& start) {
   ParameterVector weights(settings.layout, segment_count(settings));
   weights.setOnes();
+  weights.durations(segment_count(settings)) *= default_weight(std::abs(start.period()));
   for (const IndexedValue& w : settings.parameter_weights) weights(w.index - 1) = w.value;
   return {state_weights(settings), std::move(weights)};
 }

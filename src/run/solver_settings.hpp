@@ -54,7 +54,8 @@ void add_boundary_bifurcations(TestList& tests, const DefiningSystem& system, co
 
 /// THU as a vector of n weights, THL as one weight for each entry of PAR.
 Eigen::VectorXd state_weights(const RunSettings& settings);
-WeightedNorm weighted_norm(const RunSettings& settings);
+/// Durations whose weight is not given have default_weight() of the period of `start`.
+WeightedNorm weighted_norm(const RunSettings& settings, const Orbit& start);
 
 NewtonSettings newton_settings(const RunSettings& settings);
 /// Everything but the callbacks and label_start.

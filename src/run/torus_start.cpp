@@ -10,6 +10,7 @@
 #include "base/messages.hpp"
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
+#include "model/scales.hpp"
 #include "orbit/torus_system.hpp"
 #include "plugin/problem_setup.hpp"
 #include "run/solver_settings.hpp"
@@ -230,7 +231,8 @@ BranchSetup begin_torus(const HybridSystem& system, const RunSettings& settings,
   const RunSettings before = on_periodic_orbit(settings);
   const int principal = free_problem_parameters(before).front();
   const PeriodicOrbitSystem known(system, before.signature(), {principal});
-  PathFollower along(known, selected.start.orbit.shape, weighted_norm(before), newton_settings(before), principal);
+  PathFollower along(known, selected.start.orbit.shape, weighted_norm(before, selected.start.orbit),
+                     newton_settings(before), principal);
   const PathPoint at = first_point(along, known, selected, before).point;
   along.linearize_at(at);
 
@@ -358,10 +360,11 @@ class TorusDiscretisation final : public Discretisation {
 };
 
 /// The inner product of pseudo-arclength, a mean over the orbits: steps mean the same for any number of them.
-WeightedNorm mean_norm(const RunSettings& settings, int orbits) {
+WeightedNorm mean_norm(const RunSettings& settings, const Orbit& start, int orbits) {
   Eigen::VectorXd states = state_weights(settings) / orbits;
   ParameterVector parameters(settings.layout);
   parameters.setOnes();
+  parameters.durations(max_torus_segments) *= default_weight(std::abs(start.period()) / orbits);
   for (const IndexedValue& w : settings.parameter_weights) parameters(w.index - 1) = w.value;
   parameters.durations(max_torus_segments) /= orbits;
   return {std::move(states), std::move(parameters)};
@@ -388,7 +391,7 @@ BranchSetup TorusProblem::prepare(const HybridSystem& system, const RunSettings&
   setup.make_tests = [tests = std::move(curve.tests), settings = setup.settings] { return tests(settings); };
   setup.discretisation = std::make_shared<TorusDiscretisation>(*equations, one_return);
   setup.follower = std::make_unique<PathFollower>(
-      *equations, x.shape, mean_norm(setup.settings, orbits), newton_settings(one_return),
+      *equations, x.shape, mean_norm(setup.settings, x, orbits), newton_settings(one_return),
       one_return.free_parameters.front(), std::move(curve.condition), branch_monitors(*equations, setup.settings, x));
   setup.defining = std::move(equations);
   return setup;

@@ -26,7 +26,7 @@ Limits nonzero() { return {.zero_excluded = true}; }
 Limits one_of(std::vector<int> choices) { return {.choices = std::move(choices)}; }
 Limits any() { return {}; }
 
-constexpr double largest_weight = 1e15;  // beyond it rounding of one entry hides the step of all others
+constexpr double largest_weight = 1e60;                    // of a state in units of 1e-30
 constexpr double last_parameter = first_name + max_names;  // names stand there
 constexpr double max_list = 100000;                        // length of lists that nothing else bounds
 constexpr std::string_view kept = "read and kept, no effect";

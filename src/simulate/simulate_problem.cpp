@@ -350,7 +350,8 @@ void take_orbit(AttractorSearch& search, const HybridSimulation& simulation, Sim
 std::optional<VectorXd> equilibrium_of(const AttractorSearch& search, const HybridSimulation& simulation,
                                        const SimulatedSegment& last) {
   if (last.ended_by != SegmentEnd::no_event) return search.equilibrium();
-  return reached_equilibrium(simulation.system(), last, simulation.parameters(), search.ignorable());
+  return reached_equilibrium(simulation.system(), last, simulation.parameters(), search.ignorable(),
+                             simulation.sizes());
 }
 
 }  // namespace

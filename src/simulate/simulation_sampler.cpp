@@ -28,7 +28,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double never = 1e300;
-constexpr double far_away = 1e6;               // a state of this size has escaped
+constexpr double far_away = 1e6;               // a state of this size has escaped, if not so large at the start
 constexpr double every_minimum = 1e300;        // as a share of the largest value: all contacts are noted
 constexpr std::size_t samples_following = 12;  // of a segment, among which the hand-over is chosen
 constexpr long first_decision = 64;            // events after which exponents may tell the kind of a motion
@@ -205,7 +205,7 @@ class SampleRun {
         return;
       }
       SimulatedSegment segment = simulation.next(never);
-      if (segment.ended_by != SegmentEnd::event) return end_without_event(segment);
+      if (segment.ended_by != SegmentEnd::event) return end_without_event(simulation, segment);
       ++events_;
       if (const std::optional<AttractorKind> kind = look(simulation, segment)) {
         sample_.kind = *kind;
@@ -228,7 +228,7 @@ class SampleRun {
       return AttractorKind::chattering;
     }
     if (decay_.dies_out()) return AttractorKind::rest;
-    if (search_.is_beyond(segment.after, far_away)) {
+    if (search_.is_beyond(segment.after, far_away, start_)) {
       sample_.message = fmt::format("a state is larger than {:g} at t = {:.6g}", far_away, segment.end_time());
       return AttractorKind::escape;
     }
@@ -258,19 +258,19 @@ class SampleRun {
     while (is_transient && kept_.size() > most) kept_.pop_front();
   }
 
-  void end_without_event(const SimulatedSegment& segment) {
+  void end_without_event(const HybridSimulation& simulation, const SimulatedSegment& segment) {
     if (segment.ended_by == SegmentEnd::interrupted) throw SampleInterrupted();
     sample_.message = segment.message;
     kept_.clear();
     kept_.push_back(segment);
     const VectorXd& x = segment.end;
-    const bool is_far = search_.is_beyond(x, far_away);
+    const bool is_far = search_.is_beyond(x, far_away, start_);
     if (segment.ended_by == SegmentEnd::sticks) {
       sample_.kind = AttractorKind::chattering;
     } else if (is_far) {
       sample_.kind = AttractorKind::escape;
     } else if (segment.ended_by == SegmentEnd::no_event) {
-      rest_ = reached_equilibrium(system_, segment, par_, search_.ignorable());
+      rest_ = reached_equilibrium(system_, segment, par_, search_.ignorable(), simulation.sizes());
       sample_.kind = rest_ ? AttractorKind::rest : AttractorKind::escape;
       has_stayed_ = !rest_;
     }

@@ -279,8 +279,11 @@ std::optional<IndexVector> last_index(const HybridSystem& system, const Simulati
   VectorXd image(n);
   system.value(FunctionKind::jump, last.jump, end.data(), par.data(), image.data());
   const EventAt at = event_at(system, last.event, end.data(), par.data());
-  const bool is_closed = (image - start).norm() <= orbit_tolerance * (1.0 + start.norm());
-  if (!is_closed || !(std::abs(at.h) <= orbit_tolerance * at.scale(end.data()))) return std::nullopt;
+  VectorXd sizes = VectorXd::Zero(n);
+  for (Eigen::Index s = 0; s < m; ++s)
+    sizes = sizes.cwiseMax(states.middleRows(s * n, n).cwiseAbs().rowwise().maxCoeff());
+  const bool is_closed = ((image - start).cwiseAbs().array() <= orbit_tolerance * sizes.array()).all();
+  if (!is_closed || !(std::abs(at.h) <= orbit_tolerance * at.scale(end.data(), sizes))) return std::nullopt;
   return last;
 }
 

@@ -20,9 +20,10 @@ using Kind = StartNotice::Kind;
 constexpr double rounding = 1e-6;  // of the state at a label or in a .dat, relative
 
 /// h at x; 0 where it cannot be told from zero.
-double clear_value(const HybridSystem& system, int event, const VectorXd& x, const VectorXd& par) {
+double clear_value(const HybridSystem& system, int event, const VectorXd& x, const VectorXd& par,
+                   const VectorXd& sizes) {
   const EventAt at = event_at(system, event, x.data(), par.data());
-  return std::abs(at.h) <= rounding * at.scale(x.data()) ? 0.0 : at.h;
+  return std::abs(at.h) <= rounding * at.scale(x.data(), sizes) ? 0.0 : at.h;
 }
 
 /// Those of the first mode that change something: by their jump or, where the problem says what follows, the field.
@@ -93,7 +94,7 @@ std::vector<StartNotice> start_notices(const HybridSimulation& simulation) {
                                         [event](const SurfaceStart& start) { return start.index.event == event; });
     if (is_decided) continue;
     const IndexVector& v = simulation.mode().ended_by(event);
-    const double h = clear_value(system, event, x, simulation.parameters());
+    const double h = clear_value(system, event, x, simulation.parameters(), simulation.sizes());
     const bool is_left = simulation.leaves_downwards(v) && !simulation.is_cyclic() &&
                          !keeps_field(system, v, v.field, x.data(), simulation.parameters().data());
     if (h < 0.0 || is_left) notices.push_back({is_left ? Kind::field_changes : Kind::behind, event, h});

@@ -62,7 +62,7 @@ std::string state_text(const HybridSystem& system, const Orbit& orbit, const dou
   std::string text;
   for (int k = 1; k <= system.dimension(); ++k)
     text += fmt::format("{}{} = {:.10g}", k > 1 ? ", " : "", system.state_name(k),
-                        std::abs(state[k - 1]) > uncertainty(k - 1) ? state[k - 1] : 0.0);
+                        std::abs(state[k - 1]) > uncertainty(k - 1) ? system.unit_of(k) * state[k - 1] : 0.0);
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "linear/dense_matrix.hpp"
+#include "model/scales.hpp"
 #include "orbit/mesh_adaptation.hpp"
 
 namespace tchat {
@@ -200,8 +201,13 @@ ShiftedOrbit::Vector ShiftedOrbit::solve_beside(double mu, const Vector& right, 
 }
 
 bool ShiftedOrbit::find_critical(Complex mu, ComplexVector& v, ComplexVector& w, Complex& multiplier) {
-  const std::optional<CriticalStart> found = critical_start(starts_, shift_, mu);
+  std::optional<CriticalStart> found = critical_start(starts_, shift_, mu);
   if (!found) return false;
+  const HybridSystem& system = nodal_.system().system();
+  const Complex entry = found->right(largest_in_users_units(system, found->right));
+  const Complex factor = std::abs(entry) / entry / length_in_users_units(system, found->right);
+  found->right *= factor;
+  found->left /= factor;
   multiplier = found->multiplier;
   v = (shift_ - multiplier) * (closing_ * found->right);
   ComplexVector start = ComplexVector::Zero(size());
@@ -227,9 +233,8 @@ std::optional<ShiftedOrbit::DoubleVectors> ShiftedOrbit::find_double(double mu) 
   if (n_ < 2 || !(sizes(n_ - 1) < singular * sizes(n_ - 2))) return std::nullopt;
   Vector q = vectors.right.col(n_ - 1);
   Vector p = vectors.left.col(n_ - 1);
-  Eigen::Index largest = 0;
-  q.cwiseAbs().maxCoeff(&largest);
-  if (q(largest) < 0.0) q = -q;
+  const HybridSystem& system = nodal_.system().system();
+  q *= (q(largest_in_users_units(system, q)) < 0.0 ? -1.0 : 1.0) / length_in_users_units(system, q);
   const Vector q1 = solve_bordered<double>(matrix, p, q, -starts_ * q);
   p /= p.dot(q1);
   Vector p1 = solve_bordered<double>(matrix.transpose(), q, p, -starts_.transpose() * p);

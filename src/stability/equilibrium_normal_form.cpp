@@ -4,6 +4,7 @@
 #include <complex>
 
 #include "linear/dense_matrix.hpp"
+#include "model/scales.hpp"
 
 namespace tchat {
 
@@ -56,16 +57,16 @@ struct CriticalDirection {
   double lambda;
 };
 
-std::optional<CriticalDirection> critical_direction(const Eigen::MatrixXd& a) {
+std::optional<CriticalDirection> critical_direction(const HybridSystem& system, const Eigen::MatrixXd& a) {
   const Eigen::VectorXcd values = eigenvalues(a);
   if (!values.allFinite()) return std::nullopt;
-  Eigen::Index nearest = 0, largest = 0;
+  Eigen::Index nearest = 0;
   values.cwiseAbs().minCoeff(&nearest);
   if (values(nearest).imag() != 0.0) return std::nullopt;
   CriticalDirection result{eigenvector(a, values(nearest)).real(), eigenvector(a.transpose(), values(nearest)).real(),
                            values(nearest).real()};
-  result.q.cwiseAbs().maxCoeff(&largest);
-  result.q *= (result.q(largest) > 0.0 ? 1.0 : -1.0) / result.q.norm();
+  const bool is_positive = result.q(largest_in_users_units(system, result.q)) > 0.0;
+  result.q *= (is_positive ? 1.0 : -1.0) / length_in_users_units(system, result.q);
   result.p /= result.p.dot(result.q);
   if (!result.q.allFinite() || !result.p.allFinite()) return std::nullopt;
   return result;
@@ -84,7 +85,7 @@ class EquilibriumEquations final : public SingularEquations {
   std::optional<ReducedEquation> reduce(const Orbit& x) override {
     x_ = x;
     forms_.emplace(system_, x_);
-    const std::optional<CriticalDirection> found = critical_direction(forms_->jacobian());
+    const std::optional<CriticalDirection> found = critical_direction(system_.system(), forms_->jacobian());
     if (!found) return std::nullopt;
     q_ = found->q, w_ = -found->p;
     const Eigen::Index n = q_.size();
@@ -118,7 +119,7 @@ class EquilibriumEquations final : public SingularEquations {
     x.states.topRows(q_.size()).colwise() += step_.head(q_.size());
     x.par(system_.free_parameters().front() - 1) += step_(q_.size());
   }
-  double parameter(const Orbit& x) const override { return x.par(system_.free_parameters().front() - 1); }
+  double parameter_size(const Orbit& x) const override { return tchat::parameter_size(system_, x, 0); }
 
  private:
   Vector solve(const Vector& right, double& excess) const {
@@ -143,7 +144,7 @@ class EquilibriumEquations final : public SingularEquations {
 
 std::optional<Coefficient> equilibrium_fold_form(const DefiningSystem& system, const Orbit& x) {
   const EquilibriumForms forms(system, x);
-  const std::optional<CriticalDirection> critical = critical_direction(forms.jacobian());
+  const std::optional<CriticalDirection> critical = critical_direction(system.system(), forms.jacobian());
   if (!critical) return std::nullopt;
   const Product sum = product(critical->p, forms.second(critical->q, critical->q));
   if (!std::isfinite(sum.size)) return std::nullopt;
@@ -163,7 +164,8 @@ Coefficient first_lyapunov_coefficient(const DefiningSystem& system, const Orbit
   const Eigen::MatrixXd a = forms.jacobian();
   const auto second = [&](const Vector& u, const Vector& v) { return forms.second(u, v); };
   const auto third = [&](const Vector& u, const Vector& v, const Vector& w) { return forms.third(u, v, w); };
-  const ComplexVector q = eigenvector(a, {0.0, omega});
+  ComplexVector q = eigenvector(a, {0.0, omega});
+  q /= length_in_users_units(system.system(), q);
   ComplexVector p = eigenvector(a.transpose(), {0.0, -omega});
   p /= std::conj(p.dot(q));  // dot conjugates its first vector
   const ComplexVector w = p.conjugate(), qbar = q.conjugate();

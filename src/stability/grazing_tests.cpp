@@ -6,6 +6,7 @@
 
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
+#include "model/scales.hpp"
 #include "orbit/admissibility.hpp"
 #include "orbit/condensed_system.hpp"
 #include "orbit/orbit.hpp"
@@ -319,9 +320,12 @@ TestValue AccelerationTest::evaluate(const TestedPoint& point) const {
 std::string AccelerationTest::details(const TestedPoint& point) const {
   const GrazingMatrices matrices = grazing_matrices(system_, point.condensed, point.orbit, jump_);
   const Eigen::Map<const Vector> contact(point.orbit.end(system_.grazing_segment()), system_.dimension());
+  const Vector units = units_of_states(system_.system());
+  const Matrix return_map = units.asDiagonal() * matrices.return_map * units.cwiseInverse().asDiagonal();
   std::string text = fmt::format("Contact x*, beta of jump {} there, and the derivative A of the return map:\n", jump_);
-  text += "x*  " + row_text(contact.transpose()) + "\nbeta" + row_text(matrices.beta.transpose());
-  for (const auto& row : matrices.return_map.rowwise()) text += "\nA   " + row_text(row);
+  text += "x*  " + row_text(contact.cwiseProduct(units).transpose()) + "\nbeta" +
+          row_text(matrices.beta.cwiseProduct(units).transpose());
+  for (const auto& row : return_map.rowwise()) text += "\nA   " + row_text(row);
   return text;
 }
 

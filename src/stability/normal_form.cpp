@@ -50,8 +50,8 @@ std::optional<BranchingForm> branching_form(SingularEquations& equations, Orbit&
     if (!g || !(g->square_of_rate() > 0.0)) return std::nullopt;
     if (before) return with_errors_of_place(form_of(*g, equations.cubic()), *before, rounding * size);
     const Eigen::Vector2d change = change_to_centre(*g);
-    const double length = std::max(equations.find_step(change(0), change(1)) / size,
-                                   std::abs(change(1)) / (1.0 + std::abs(equations.parameter(x))));
+    const double length =
+        std::max(equations.find_step(change(0), change(1)) / size, std::abs(change(1)) / equations.parameter_size(x));
     if (!(length < farthest)) return std::nullopt;
     const bool is_rounding = last < near && length > 0.5 * last;  // that the equations may amplify
     if (length < arrived || is_rounding) before = form_of(*g, equations.cubic());
@@ -135,7 +135,7 @@ class OrbitEquations final : public SingularEquations {
     return std::max(step_.states.lpNorm<Eigen::Infinity>(), step_.durations.lpNorm<Eigen::Infinity>());
   }
   void move(Orbit& x) const override { advance(x, 1.0, step_, system_.free_parameters()); }
-  double parameter(const Orbit& x) const override { return x.par(system_.free_parameters().front() - 1); }
+  double parameter_size(const Orbit& x) const override { return tchat::parameter_size(system_, x, 0); }
 
   Vector start() { return vector().states.col(0); }  ///< q
 
@@ -165,9 +165,8 @@ double difference(const Found& a, const Found& b, Complex critical) {
 /// first order.
 Orbit along_branch(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent, Orbit other, double size) {
   double fastest = tangent.states.cwiseAbs().maxCoeff() / (1.0 + x.states.cwiseAbs().maxCoeff());
-  for (std::size_t k = 0; k < system.free_parameters().size(); ++k)
-    fastest = std::max(fastest, std::abs(tangent.globals(static_cast<Eigen::Index>(k))) /
-                                    (1.0 + std::abs(x.par(system.free_parameters()[k] - 1))));
+  for (int k = 0; k < system.free_count(); ++k)
+    fastest = std::max(fastest, std::abs(tangent.globals(k)) / parameter_size(system, x, k));
   const double step = size / fastest;
   other.states += step * interpolate_states(tangent.states, x.shape, x.mesh, other.shape, other.mesh);
   advance_parameters(other, step, tangent, system.free_parameters());

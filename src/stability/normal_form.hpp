@@ -59,7 +59,8 @@ class SingularEquations {
   virtual double find_step(double y, double s) = 0;
   /// That step; x is the orbit of reduce().
   virtual void move(Orbit& x) const = 0;
-  virtual double parameter(const Orbit& x) const = 0;
+  /// Of its one free parameter.
+  virtual double parameter_size(const Orbit& x) const = 0;
 };
 
 /// Coefficients of g, with the errors of sums. The sign of a is that of V.

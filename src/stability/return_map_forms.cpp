@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "model/scales.hpp"
+
 namespace tchat {
 
 namespace {
@@ -159,10 +161,10 @@ bool ReturnMapForms::find_critical(Complex mu, CriticalVectors& found) {
 }
 
 bool ReturnMapForms::normalise(CriticalVectors& vectors) const {
-  Eigen::Index largest = 0;
-  vectors.right.head(n_).cwiseAbs().maxCoeff(&largest);
-  const Complex entry = vectors.right(largest);
-  vectors.right *= std::abs(entry) / entry / vectors.right.head(n_).norm();
+  const auto start = vectors.right.head(n_);
+  const HybridSystem& system = system_.system();
+  const Complex entry = start(largest_in_users_units(system, start));
+  vectors.right *= std::abs(entry) / entry / length_in_users_units(system, start);
   const Complex overlap = (vectors.left.tail(n_).transpose() * vectors.right.head(n_)).value();
   vectors.left *= 1.0 / overlap;
   return vectors.right.allFinite() && vectors.left.allFinite();

@@ -1,0 +1,67 @@
+#include "run/own_units.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tchat {
+
+namespace {
+
+/// States, or changes of them, n to a column.
+void divide(Eigen::MatrixXd& states, const Eigen::VectorXd& units) {
+  if (states.size() > 0) states = units.cwiseInverse().asDiagonal() * states;
+}
+
+std::vector<IndexedValue> own_weights(const RunSettings& settings, const Eigen::VectorXd& sizes,
+                                      const Eigen::VectorXd& units) {
+  std::vector<IndexedValue> weights;
+  for (int k = 1; k <= static_cast<int>(units.size()); ++k) {
+    double weight = default_weight(sizes(k - 1));
+    for (const IndexedValue& given : settings.state_weights)
+      if (given.index == k) weight = given.value;
+    weights.push_back({k, weight * units(k - 1) * units(k - 1)});
+  }
+  return weights;
+}
+
+/// A parameter that is small or zero at the start changes by the longest step at most, where nothing else changes.
+Eigen::VectorXd parameter_sizes(const RunSettings& settings, const SelectedStart& start) {
+  const ParameterVector& par = start.start.orbit.par;
+  const double longest = std::max(std::abs(settings.step_max), std::abs(settings.step));
+  Eigen::VectorXd sizes(par.layout().first_duration() - 1);
+  for (Eigen::Index k = 0; k < sizes.size(); ++k) {
+    double weight = 1.0;
+    for (const IndexedValue& given : settings.parameter_weights)
+      if (given.index == k + 1) weight = given.value;
+    const double step = std::min(1.0, longest / (weight > 0.0 ? std::sqrt(weight) : 1.0));
+    sizes(k) = is_ordinary(par(k)) ? 1.0 : std::max(std::abs(par(k)), step);
+    if (par(k) == 0.0 && !is_ordinary(step)) sizes(k) = step;
+  }
+  return sizes;
+}
+
+}  // namespace
+
+OwnUnits in_own_units(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start) {
+  const Eigen::VectorXd sizes = state_sizes(system, settings.signature(), start.start.orbit);
+  const Eigen::VectorXd units = units_of(sizes);
+  OwnUnits own{
+      std::make_unique<ScaledProblem>(system, Scales{units, parameter_sizes(settings, start)}), start, settings, {}};
+  own.settings.state_weights = own_weights(settings, sizes, units);
+  if (units == Eigen::VectorXd::Ones(units.size())) return own;
+  own.units = units;
+  divide(own.start.start.orbit.states, units);
+  if (own.start.start.direction) divide(own.start.start.direction->states, units);
+  if (own.start.second) divide(own.start.second->states, units);
+  return own;
+}
+
+PathPoint in_users_units(const PathPoint& point, const Eigen::VectorXd& units) {
+  PathPoint result = point;
+  result.orbit.states = units.asDiagonal() * result.orbit.states;
+  if (result.tangent.states.size() > 0) result.tangent.states = units.asDiagonal() * result.tangent.states;
+  return result;
+}
+
+}  // namespace tchat
