@@ -36,7 +36,7 @@ struct Branch {
   /// Of the prediction by the points before `here`, from the point that Newton's method finds.
   double error(double ds) {
     PathPoint predicted = here;
-    if (HermitePredictor(alpha).predict(here, ds, predicted.orbit).error == 0.0)
+    if (HermitePredictor(orbits.system).predict(here, ds, predicted.orbit).error == 0.0)
       advance(predicted.orbit, ds, here.tangent, alpha);
     PathPoint found = here;
     REQUIRE(orbits.follower.step(here, ds, found).converged());

@@ -203,7 +203,7 @@ TEST_CASE("an orbit whose events shooting does not find again is a value") {
   segment.mode = {{{1, 1, 1}}, {}};
   segment.index = {1, 1, 1};
   segment.start = segment.low = Vector2d(0.0, 1.0);
-  segment.high = Vector2d(1.0, 2.0);
+  segment.high = segment.end = Vector2d(1.0, 2.0);
   SimulationResult result;
   result.turn = {segment, segment};
   const FoundOrbit found = refine(system_of<BouncingBall>(), result, parameters({-9.81, 1.0}), {0, 0, 0});

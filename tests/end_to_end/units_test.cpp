@@ -1,0 +1,118 @@
+// Nothing depends on units: the same problem in other ones has the same events, orbits and special points.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "end_to_end/event_list.hpp"
+#include "end_to_end/workspace.hpp"
+
+using namespace test_support;
+
+namespace {
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// The forced oscillator of the tutorial with a wall at x = u: x and v are proportional to u.
+std::string oscillator(const std::string& u) {
+  return "par alpha=3.2, omega=2.0072, zeta=0.05, r=0.8\nnumber u=" + u +
+         "\ninit y2=1\ngrowth = 1 - y1^2 - y2^2\nx' = v\nv' = u*alpha*y2 - 2*zeta*v - x\n"
+         "y1' = growth*y1 + omega*y2\ny2' = growth*y2 - omega*y1\nevent wall = u - x\nevent maximum = v\n"
+         "jump impact: v -> -r*v\nafter any: wall -> impact, maximum -> identity\n";
+}
+
+const char* const ball =
+    "par g=9.81, r=0.8\ninit x=1e-6, v=0, p=1e5\nx' = v\nv' = -g\np' = 0\n"
+    "event floor = x\njump impact: v -> -r*v\nafter any: floor -> impact\n";
+
+}  // namespace
+
+TEST_CASE("an oscillator in metres, millimetres or nanometres has its period doubling, and unstable orbits are so") {
+  const std::string u = GENERATE("1", "1e-3", "1e-6", "1e-9", "1e6");
+  INFO("u = " << u);
+  const Workspace workspace;
+  workspace.write("osc.tch", oscillator(u));
+  workspace.succeed("simulate osc --dat s -q");
+  const Outcome outcome = workspace.succeed(std::vector<std::string>{
+      "run", "osc", "-c", "s", "-d", "s", "-o", "b", "DS=-0.02", "RL0=3.0358", "UZR={alpha:[3.0361,3.036]}"});
+  INFO(outcome.text());
+  CHECK_FALSE(contains(outcome.text(), "tangent"));
+  CHECK(contains(outcome.out, "normal form c = 110"));  // of the unit vector in the units of the file
+  std::vector<double> unstable;
+  double doubling = 0.0;
+  for (const PointRow& row : workspace.points("b").front().rows) {
+    if (row.type == 7) doubling = row.values[0];
+    if (std::abs(row.type) == 4 && row.point > 0) unstable.push_back(row.values[0]);
+  }
+  // The multipliers of the closed form at the two labels are -1.6084192 and -2.3369872.
+  CHECK(doubling == Approx(3.036193566).epsilon(1e-9));
+  REQUIRE(unstable.size() == 2);
+  CHECK(contains(workspace.succeed("verify q.b -p osc").out, "5 labels agree with forward integration"));
+}
+
+TEST_CASE("a ball falls on a floor, whatever the pressure that nothing depends on, and however near the floor is") {
+  const Workspace workspace;
+  workspace.write("gap.tch", ball);
+  for (const std::string state : {"p=1e5", "p=0", "p=1e-9"}) {
+    INFO(state);
+    const Outcome outcome = workspace.succeed(
+        std::vector<std::string>{"simulate", "gap", "--state", state, "--time", "0.003", "-o", "fall"});
+    // Impacts at t = T (1 + 2 (r + r^2 + ...)), T = sqrt(2 x / g): six until 0.003.
+    CHECK(contains(outcome.out, "6 events"));
+    std::vector<double> times;
+    for (const ListedEvent& event : read_event_list(workspace.read("fall.events"), 3)) times.push_back(event.time);
+    REQUIRE(times.size() >= 6);
+    const double first = std::sqrt(2e-6 / 9.81);
+    double expected = first;
+    for (int k = 0; k < 6; ++k) {
+      CHECK(times[static_cast<std::size_t>(k)] == Approx(expected).epsilon(1e-8));
+      expected += 2.0 * first * std::pow(0.8, k + 1);
+    }
+  }
+  const Outcome near =
+      workspace.succeed(std::vector<std::string>{"simulate", "gap", "--state", "x=5e-10,p=0", "--time", "3e-4"});
+  // The limit of all impacts is T (1 + r) / (1 - r).
+  CHECK(contains(near.out, "t = 9.0867379"));
+}
+
+TEST_CASE("a clock beside a state of 2e9 ticks, and the orbit is found") {
+  const Workspace workspace;
+  workspace.write("clock.tch",
+                  "par k=1\ninit tau=0, u=2e9\ntau' = 1\nu' = -0.01*k*(u - 2e9)\n"
+                  "event tick = 1 - tau\njump apply: tau -> 0\nafter any: tick -> apply\n");
+  const Outcome outcome = workspace.succeed("simulate clock");
+  INFO(outcome.text());
+  CHECK(contains(outcome.out, "Periodic orbit, signature {(1,1,1)}, period 1\n"));
+}
+
+TEST_CASE("a valve in metres has the impact of a tenth of a millimetre a second that it has in millimetres") {
+  // A spool between two stops with Coulomb friction, pressed by an oscillating pressure; times by closed forms of each
+  // phase.
+  const Workspace workspace;
+  workspace.write("valve.tch", R"(par freq=250, amp=27580, mean=124110, M=0.0003361185937456267, k=1488.578099595049
+par preload=8.54503372291542, area=7.373657906574696e-5, fr=1, r=0.3, width=0.001016
+init x=0.0004, v=0.1, c=1
+om = 2*pi*freq
+net = (mean + amp*s)*area - preload - k*x
+x' = v
+s' = om*((1 - s^2 - c^2)*s + c)
+c' = om*((1 - s^2 - c^2)*c - s)
+field right: v' = (net - fr)/M
+field left:  v' = (net + fr)/M
+event slows = v
+event turns = -v
+event rstop = width - x
+event lstop = x
+jump bounce: v -> -r*v
+slide stuck on slows: go_left -> left, go_right -> right
+after any if stuck:  stuck until go_left -> identity, go_right -> identity
+after rstop: left until turns -> identity, lstop -> bounce
+after lstop: right until slows -> identity, rstop -> bounce
+after any if right:  right until slows -> identity, rstop -> bounce
+after any:           left until turns -> identity, lstop -> bounce
+)");
+  const Outcome outcome = workspace.succeed("simulate valve");
+  INFO(outcome.text());
+  CHECK(contains(outcome.out,
+                 "(1,1,2), (2,4,1), (1,1,2), (2,4,1), (1,1,2), (2,4,1), (1,1,2), (3,6,2), (1,3,1), "
+                 "(2,2,2), (1,1,2), (3,5,2), (2,4,1)"));
+  CHECK(contains(outcome.out, "h_x f = -0.00011325"));
+}
