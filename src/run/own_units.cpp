@@ -35,8 +35,8 @@ Eigen::VectorXd parameter_sizes(const RunSettings& settings, const SelectedStart
     for (const IndexedValue& given : settings.parameter_weights)
       if (given.index == k + 1) weight = given.value;
     const double step = std::min(1.0, longest / (weight > 0.0 ? std::sqrt(weight) : 1.0));
-    sizes(k) = is_ordinary(par(k)) ? 1.0 : std::max(std::abs(par(k)), step);
-    if (par(k) == 0.0 && !is_ordinary(step)) sizes(k) = step;
+    const double size = std::max(std::abs(par(k)), step);
+    sizes(k) = is_ordinary(size) ? 1.0 : size;
   }
   return sizes;
 }

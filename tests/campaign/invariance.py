@@ -117,7 +117,7 @@ class Diagram:
         order = list(self.start)
         weights = ", ".join("%d: %r" % (order.index(x) + 1, (by.of(x) / size)**2) for x, size in scale.items())
         self.run("run", "system", "-c", "s", "-d", "s", "-o", "b", "--both", "--clip", "-q", "ICP=[%s]" % name,
-                 "THU={%s}" % weights, "THL={%s: %r}" % (name, (unit / width)**2), "DS=0.005", "DSMAX=0.03",
+                 "THU={%s}" % weights, "THL={%s: %r%s}" % (name, (unit / width)**2, self.durations()), "DS=0.005", "DSMAX=0.03",
                  "NMX=%d" % POINTS, "RL0=%r" % (bounds[0] / unit), "RL1=%r" % (bounds[1] / unit))
         self.sections = self.points(unit, by.time)
 
@@ -125,6 +125,11 @@ class Diagram:
         done = subprocess.run([self.tchat, *words], cwd=self.folder, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             raise RuntimeError("%s: %s" % (" ".join(words), done.stderr.strip() or done.stdout.strip()))
+
+    def durations(self):
+        """The weight 0 for each of them, as simulation writes it for one."""
+        text = (self.folder / "s.dat").read_text()
+        return "".join(", %s: 0" % k for k in re.findall(r"# PAR\((6[1-9]|[7-9]\d)\)", text))
 
     def states(self):
         """The largest |x| of each state of the orbit in s.dat."""
