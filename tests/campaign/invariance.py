@@ -5,8 +5,8 @@ Each system is rewritten at random: states and parameters in other units, x = s 
 with positive factors, a state on which nothing depends, parameters in another order. Simulation must find the same
 orbit, and a run from it the same special points: types, values, stability, numbers of points.
 
-Steps are compared with weights that are rewritten like everything else: THU and THL are given, as shares of the sizes of
-states and of the range of the parameter.
+Steps are compared with weights that are rewritten like everything else: THU and THL are given, as shares of the sizes
+of states and of the range of the parameter.
 """
 
 import argparse
@@ -117,7 +117,8 @@ class Diagram:
         order = list(self.start)
         weights = ", ".join("%d: %r" % (order.index(x) + 1, (by.of(x) / size)**2) for x, size in scale.items())
         self.run("run", "system", "-c", "s", "-d", "s", "-o", "b", "--both", "--clip", "-q", "ICP=[%s]" % name,
-                 "THU={%s}" % weights, "THL={%s: %r%s}" % (name, (unit / width)**2, self.durations()), "DS=0.005", "DSMAX=0.03",
+                 "THU={%s}" % weights, "THL={%s: %r%s}" % (name, (unit / width)**2, self.durations()),
+                 "DS=0.005", "DSMAX=0.03",
                  "NMX=%d" % POINTS, "RL0=%r" % (bounds[0] / unit), "RL1=%r" % (bounds[1] / unit))
         self.sections = self.points(unit, by.time)
 
