@@ -74,6 +74,8 @@ class DefiningSystem {
   virtual double* coupling_derivatives(int s, const Orbit& x, double* values, double* entries) const = 0;
   /// What row r of group s says, for messages.
   virtual std::string coupling_name(int s, int r) const = 0;
+  /// What a value 1 of that row is in the units of the user: where it is a state or its rate, the state's unit.
+  virtual double coupling_unit(int /*s*/, int /*r*/) const { return 1.0; }
   /// A function of the coupling rows of group s, or a derivative of it, that is not finite at x: what and where, else
   /// "".
   virtual std::string coupling_failure(int s, const Orbit& x) const = 0;

@@ -33,6 +33,7 @@ class EquilibriumSystem final : public DefiningSystem {
   void coupling_values(int s, const Orbit& x, double* values) const override;
   double* coupling_derivatives(int s, const Orbit& x, double* values, double* entries) const override;
   std::string coupling_name(int s, int r) const override;
+  double coupling_unit(int, int r) const override { return r == 0 ? 1.0 : system().unit_of(r); }
   std::string coupling_failure(int s, const Orbit& x) const override;
 
   /// The sign of det [f_x f_p; t^T] for one free parameter, t the tangent at x, times the least singular value of this

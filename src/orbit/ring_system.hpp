@@ -85,6 +85,9 @@ class RingSystem : public DefiningSystem {
   void coupling_values(int s, const Orbit& x, double* values) const final;
   double* coupling_derivatives(int s, const Orbit& x, double* values, double* entries) const final;
   std::string coupling_name(int s, int r) const final;
+  double coupling_unit(int s, int r) const final {
+    return r < end_conditions(s) ? 1.0 : system().unit_of(r - end_conditions(s) + 1);
+  }
   std::string coupling_failure(int s, const Orbit& x) const final;
 
   /// Is the end condition of segment s divided by its duration at x?
@@ -150,6 +153,7 @@ class UnfoldedSystem final : public DefiningSystem {
   void coupling_values(int s, const Orbit& x, double* values) const override;
   double* coupling_derivatives(int s, const Orbit& x, double* values, double* entries) const override;
   std::string coupling_name(int s, int r) const override { return ring_->coupling_name(s, r); }
+  double coupling_unit(int s, int r) const override { return ring_->coupling_unit(s, r); }
   std::string coupling_failure(int s, const Orbit& x) const override { return ring_->coupling_failure(s, x); }
   int integral_conditions() const override { return ring_->integral_conditions(); }
   void integral_values(const Orbit& x, const Orbit& reference, const CollocationRule& rule,

@@ -84,15 +84,17 @@ std::string residual_report(PathFollower& follower, const DefiningSystem& defini
     lines.emplace_back(value, fmt::format("\n  {:11.4e}  {}", value, what));
   };
   std::size_t coupling = 0;
+  const auto n = static_cast<std::size_t>(defining.dimension());
   const std::size_t per_segment = residual.collocation.size() / static_cast<std::size_t>(m);
   for (int s = 0; s < m; ++s) {
     double defect = 0.0;
     for (std::size_t i = 0; i < per_segment; ++i)
-      defect = std::max(defect, std::abs(residual.collocation[static_cast<std::size_t>(s) * per_segment + i]));
+      defect = std::max(defect, defining.system().unit_of(static_cast<int>(i % n) + 1) *
+                                    std::abs(residual.collocation[static_cast<std::size_t>(s) * per_segment + i]));
     if (start.shape.stored_nodes() > 1)
       add(defect, fmt::format("differential equations on segment {} (largest defect)", s + 1));
     for (int r = 0; r < defining.coupling_rows(s); ++r)
-      add(residual.coupling[coupling++], defining.coupling_name(s, r));
+      add(defining.coupling_unit(s, r) * residual.coupling[coupling++], defining.coupling_name(s, r));
   }
   for (int r = 0; r < defining.integral_conditions(); ++r)
     add(residual.integral[static_cast<std::size_t>(r)], defining.integral_name(r));
