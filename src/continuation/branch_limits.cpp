@@ -322,8 +322,9 @@ bool ClosedBranch::is_first(const PathPoint& point) const {
   };
   for (const int k : system_.free_parameters())
     if (!equal(a.par(k - 1), b.par(k - 1), system_.system().parameter_size(k, a.par(k - 1)))) return false;
+  const double time = time_size(system_, a);
   for (int s = 0; s < a.shape.segments; ++s)
-    if (!equal(a.duration(s), b.duration(s), time_size(system_, a) + std::abs(a.duration(s)))) return false;
+    if (!equal(a.duration(s), b.duration(s), time + std::abs(a.duration(s)))) return false;
   if (!phase_is_fixed_) return (measures(b) - first_measures_).cwiseAbs().maxCoeff() <= same_measures;
   const double size = 1.0 + a.states.cwiseAbs().maxCoeff();
   return (a.states - b.states).cwiseAbs().maxCoeff() <= same * newton.tolerance_states * size &&
@@ -335,8 +336,7 @@ Eigen::VectorXd ClosedBranch::sizes_of_measures(const Orbit& x, const Eigen::Vec
   Eigen::VectorXd sizes = 1.0 + measured.array().abs();
   const Eigen::Index free = system_.free_count(), segments = x.shape.segments;
   for (Eigen::Index g = 0; g < free; ++g) sizes(g) = parameter_size(system_, x, static_cast<int>(g));
-  for (Eigen::Index s = 0; s < segments; ++s)
-    sizes(free + s) = time_size(system_, x) + std::abs(x.duration(static_cast<int>(s)));
+  sizes.segment(free, segments) = measured.segment(free, segments).array().abs() + time_size(system_, x);
   return sizes;
 }
 

@@ -20,13 +20,10 @@ Eigen::MatrixXd project_along_flow(const Eigen::VectorXd& f, const Eigen::Vector
   return v + f * change_of_time(f, gradient, v);
 }
 
-double EventAt::scale(const double* x, const Eigen::VectorXd& sizes) const {
+double surface_scale(const Eigen::VectorXd& gradient, const double* x, const Eigen::VectorXd& sizes) {
   const Eigen::Map<const Eigen::VectorXd> state(x, gradient.size());
+  if (sizes.size() == 0) return gradient.norm() * (1.0 + state.norm());
   return gradient.cwiseAbs().dot(state.cwiseAbs().cwiseMax(sizes));
-}
-
-double EventAt::scale(const double* x) const {
-  return gradient.norm() * (1.0 + Eigen::Map<const Eigen::VectorXd>(x, gradient.size()).norm());
 }
 
 EventAt event_at(const HybridSystem& system, int event, const double* x, const double* par) {

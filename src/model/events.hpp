@@ -25,6 +25,11 @@ Eigen::RowVectorXd change_of_time(const Eigen::VectorXd& f, const Eigen::VectorX
 /// v + f sigma = (Id - f h_x / (h_x f)) v: onto that surface, along the flow.
 Eigen::MatrixXd project_along_flow(const Eigen::VectorXd& f, const Eigen::VectorXd& gradient, const Eigen::MatrixXd& v);
 
+/// What states of their sizes make of an event function with the gradient h_x (n) at x: up to this times the share to
+/// which states are known h is zero. `sizes`: of the states, n; none: of a problem in units of its own orbit
+/// (model/scaled_problem.hpp), whose states are of size 1. 0 where h depends on no state.
+double surface_scale(const Eigen::VectorXd& gradient, const double* x, const Eigen::VectorXd& sizes);
+
 struct EventAt {
   double h = 0.0;
   Eigen::VectorXd gradient;  ///< h_x, n
@@ -32,10 +37,7 @@ struct EventAt {
 
   double rate() const { return gradient.dot(f); }              ///< h_x f
   double sizes() const { return gradient.norm() * f.norm(); }  ///< |h_x| |f|
-  /// What states of their sizes make of h: up to this times a share to which they are known h is zero. `sizes`: of the
-  /// states, n; none: as of a problem in units of its own orbit (model/scales.hpp), whose states are of size 1.
-  double scale(const double* x, const Eigen::VectorXd& sizes) const;
-  double scale(const double* x) const;
+  double scale(const double* x, const Eigen::VectorXd& sizes = {}) const { return surface_scale(gradient, x, sizes); }
   /// Onto the surface of the event, along the flow.
   Eigen::MatrixXd project(const Eigen::MatrixXd& v) const { return project_along_flow(f, gradient, v); }
 };

@@ -37,10 +37,10 @@ struct OrbitEnds {
   const double* par;
 };
 
-/// What one unit of each state and each parameter is (model/scales.hpp).
+/// The units in which the states of a problem are taken (model/scaled_problem.hpp), and how large its parameters are.
 struct Scales {
-  Eigen::VectorXd units;       ///< of states, in those that users read: n
-  Eigen::VectorXd parameters;  ///< sizes of the parameters, from PAR(1)
+  Eigen::VectorXd units;       ///< of states, n: what their value 1 is in the units of the user
+  Eigen::VectorXd parameters;  ///< sizes of PAR(1), ... (HybridSystem::parameter_size())
 };
 
 class HybridSystem {

@@ -1,16 +1,13 @@
-/// The sizes of what a problem is made of, against which a number is small or large: states and event functions; and
-/// the problem in units of its own states.
+/// How large states, events, durations and parameters are, against which a number is small.
 ///
-/// A problem may be written in any units: x_i = u_i y_i with any u_i > 0 is the same problem. So nothing may be decided
-/// by a number that has a unit. A run does not divide by sizes at each of its decisions: it solves the problem for y,
-/// whose states are of size 1, and gives its solutions back as x (ScaledProblem). What is left for decisions are the
-/// sizes of events, sums of the terms that h and h_x f are made of (model/events.hpp).
+/// A problem may be written in any units: x_i = u_i y_i with any u_i > 0 is the same problem, so that nothing may be
+/// decided by a number that has a unit. A run solves the problem for y, whose states are of size 1
+/// (model/scaled_problem.hpp); simulations compare states with the sizes that they have had; events are judged by what
+/// states of their sizes make of them (model/events.hpp).
 #pragma once
 
 #include <Eigen/Core>
 #include <cmath>
-#include <complex>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -18,31 +15,36 @@
 
 namespace tchat {
 
-/// The sizes of the states of an orbit: the largest |x_i| of each row of `states`, n.
+/// The sizes of the states of an orbit or a motion: the largest |x_i|, n.
 ///
-/// A state that is zero by symmetry is there but for rounding, and that must not be taken for its size. What sets it
-/// apart from a state in large units is that nothing is changed by it: a state far smaller than others has a size only
-/// if, in a chain of such steps, one that has a size is changed by it: by a term of its rate, of its jump, or of an
-/// event function that is no rounding of the others. All others have size 1: nothing is known of them.
+/// A state that symmetry makes zero still shows rounding, 1e-17 or less, which is not its size. Small as it is, it may
+/// also be a state in large units. It is one, and has a size, only if something depends on it: if, directly or through
+/// other such states, it is a visible part of the terms of an event function, or of the rate or the jump of a state
+/// that has a size. States that are not far smaller than the largest one have one. All others have size 1: nothing is
+/// known of them.
 class StateSizes {
  public:
   /// `states`: some of an orbit, n to a column.
   explicit StateSizes(const Eigen::MatrixXd& states);
 
-  /// A function of the orbit whose values are states (rates, images of a jump): n values and their derivatives by the
-  /// states (n x n) at one of these.
-  void add_states(const Eigen::VectorXd& values, const Eigen::MatrixXd& by_state);
-  /// The same of the rates at the only state, which is at rest: what its terms do not cancel shows that it has no size
-  /// but rounding of zero.
-  void add_rates_at_rest(const Eigen::VectorXd& values, const Eigen::MatrixXd& by_state);
-  /// An event function at one of them.
-  void add_event(double value, const Eigen::RowVectorXd& by_state, const double* x);
+  /// A function on which the orbit depends, at one of its states.
+  void add(const HybridSystem& system, FunctionKind kind, int index, const double* x, const double* par);
+  /// The only state is at rest. Where the terms of its rate do not cancel it is rounding of zero.
+  void add_at_rest(const HybridSystem& system, int field, const double* x, const double* par);
 
   Eigen::VectorXd sizes() const;
   /// Of each state: has it a size?
   std::vector<bool> known() const;
 
  private:
+  struct Terms {
+    Eigen::VectorXd values;  // of the function
+    Eigen::MatrixXd terms;   // |dF_j / dx_i| times the size of x_i
+    double constant;         // what is left of the first value without its linear terms
+  };
+  Terms terms_of(const HybridSystem& system, FunctionKind kind, int index, const double* x, const double* par) const;
+  void add_states(const Terms& of);
+
   Eigen::VectorXd largest_;
   Eigen::MatrixXd shares_;  // (j, i): the largest part that state i has in the terms of values for state j
   Eigen::VectorXd in_events_;
@@ -64,8 +66,14 @@ bool is_ordinary(double size);
 /// would mean nothing.
 double default_weight(double size);
 
-/// Powers of two next to `sizes`: multiplication by them is exact. All 1 where no size is many times larger or smaller
-/// than 1: what is computed then is what it would be without units.
+/// Are sizes of states, as far as they are known, so near to 1 that units make no difference: from 1/64 to 64?
+bool are_usual(const Eigen::VectorXd& sizes);
+
+/// What an absolute tolerance of integration, which is meant for states of size 1, is to be multiplied by for one of
+/// this size: not more than 1, nor nothing; 1 where the size is 0, not known.
+double size_for_tolerance(double size);
+
+/// Powers of two next to `sizes`, multiplication by which is exact; all 1 where they are usual.
 Eigen::VectorXd units_of(const Eigen::VectorXd& sizes);
 
 /// u, all 1 of a problem in the units of its user: n.
@@ -90,27 +98,5 @@ Eigen::Index largest_in_users_units(const HybridSystem& system, const Vector& v)
   }
   return largest;
 }
-
-/// A problem for y, x_i = u_i y_i:
-///
-///     y' = u^-1 f(u y, p),   h(u y, p),   u^-1 g(u y, p),
-///
-/// with the derivatives that the problem has. Time, parameters and the values of event functions, conditions and
-/// user functions are as they were. The table of the problem outlives this object, and this object its system().
-class ScaledProblem {
- public:
-  /// Scales::units: u, n positive numbers.
-  ScaledProblem(const HybridSystem& base, Scales scales);
-  ScaledProblem(const ScaledProblem&) = delete;
-  ScaledProblem& operator=(const ScaledProblem&) = delete;
-  ~ScaledProblem();
-
-  const HybridSystem& system() const;
-  const Eigen::VectorXd& units() const;
-
- private:
-  struct Implementation;
-  std::unique_ptr<Implementation> p_;
-};
 
 }  // namespace tchat

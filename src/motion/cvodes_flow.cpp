@@ -17,6 +17,7 @@
 
 #include "model/function_values.hpp"
 #include "model/parameter_vector.hpp"
+#include "model/scales.hpp"
 
 namespace tchat {
 
@@ -112,16 +113,13 @@ struct CvodesFlow::Implementation {
 
   /// Absolute ones are shares of sizes, where these are known and small.
   void set_tolerances() {
-    constexpr double no_size = 1e-100;
     if (are_usual(options.sizes)) {
       CVodeSStolerances(cvode(), options.relative_tolerance, options.absolute_tolerance);
       return;
     }
     const Vector absolute(N_VNew_Serial(n, context.get()), &N_VDestroy);
-    for (int i = 0; i < n; ++i) {
-      const double size = options.sizes(i) > no_size ? std::min(options.sizes(i), 1.0) : 1.0;
-      N_VGetArrayPointer(absolute.get())[i] = options.absolute_tolerance * size;
-    }
+    for (int i = 0; i < n; ++i)
+      N_VGetArrayPointer(absolute.get())[i] = options.absolute_tolerance * size_for_tolerance(options.sizes(i));
     CVodeSVtolerances(cvode(), options.relative_tolerance, absolute.get());
   }
 

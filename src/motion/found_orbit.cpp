@@ -169,23 +169,19 @@ FoundOrbit without_cuts(FoundOrbit orbit, std::vector<int> monitored) {
 }
 
 StateSizes sizes_in(const HybridSystem& system, std::span<const SimulatedSegment> segments, const VectorXd& par) {
-  const Eigen::Index n = system.dimension();
-  MatrixXd extremes(n, 2 * std::ssize(segments));
-  for (Eigen::Index s = 0; s < std::ssize(segments); ++s)
-    extremes.middleCols(2 * s, 2) << segments[static_cast<std::size_t>(s)].low,
-        segments[static_cast<std::size_t>(s)].high;
-  StateSizes sizes(extremes);
-  VectorXd values(n);
-  MatrixXd by_state(n, n);
-  const auto add = [&](FunctionKind kind, int index, const VectorXd& x) {
-    system.first(kind, index, x.data(), par.data(), {}, values.data(), by_state.data(), nullptr);
-    sizes.add_states(values, by_state);
-  };
+  MatrixXd extremes(system.dimension(), 2 * std::ssize(segments));
+  Eigen::Index column = 0;
   for (const SimulatedSegment& segment : segments) {
-    for (const VectorXd& x : {segment.start, segment.end}) add(FunctionKind::field, segment.index.field, x);
-    add(FunctionKind::jump, segment.index.jump, segment.end);
-    const EventAt at = event_at(system, segment.index.event, segment.end.data(), par.data());
-    sizes.add_event(at.h, at.gradient.transpose(), segment.end.data());
+    extremes.col(column++) = segment.low;
+    extremes.col(column++) = segment.high;
+  }
+  StateSizes sizes(extremes);
+  for (const SimulatedSegment& segment : segments) {
+    const auto [field, event, jump] = segment.index;
+    for (const VectorXd& x : {segment.start, segment.end})
+      sizes.add(system, FunctionKind::field, field, x.data(), par.data());
+    sizes.add(system, FunctionKind::jump, jump, segment.end.data(), par.data());
+    sizes.add(system, FunctionKind::event, event, segment.end.data(), par.data());
   }
   return sizes;
 }

@@ -11,6 +11,7 @@
 #include "model/events.hpp"
 #include "model/function_values.hpp"
 #include "model/parameter_vector.hpp"
+#include "model/scales.hpp"
 #include "motion/cvodes_flow.hpp"
 
 namespace tchat {

@@ -14,14 +14,15 @@
 #include <cstdint>
 #include <utility>
 
+#include "model/events.hpp"
 #include "model/function_values.hpp"
+#include "model/scales.hpp"
 #include "motion/cvodes_flow.hpp"
 
 namespace tchat {
 
 namespace {
 
-using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
 /// Between a, where f > 0, and b, where it is not: the first time after which it is not.
@@ -67,9 +68,7 @@ EventWatch::Value EventWatch::on_field(int event, const double* x) const {
   system_.first(FunctionKind::event, event, x, par_.data(), {}, &value.h, h_x_.data(), nullptr);
   const double rate = h_x_.dot(f_);
   value.rate = std::isfinite(rate) ? rate : 0.0;
-  const Eigen::Map<const VectorXd> state(x, h_x_.size());
-  const double scale =
-      sizes_.size() == 0 ? h_x_.norm() * (1.0 + state.norm()) : h_x_.cwiseAbs().dot(state.cwiseAbs().cwiseMax(sizes_));
+  const double scale = surface_scale(h_x_, x, sizes_);
   value.scale = scale > 0.0 ? scale : 1.0;  // no gradient: a problem that does not give the one it says it has
   return value;
 }
@@ -162,18 +161,6 @@ void EventWatch::look_again_from(double time, const DenseOutput& state) {
   }
 }
 
-namespace {
-
-constexpr double no_size = 1e-100;
-
-}  // namespace
-
-bool are_usual(const Eigen::VectorXd& sizes) {
-  constexpr double alike = 64.0;
-  return std::all_of(sizes.begin(), sizes.end(),
-                     [](double size) { return size <= no_size || (size <= alike && size >= 1.0 / alike); });
-}
-
 std::unique_ptr<WatchedFlow> make_flow(const HybridSystem& system, int field, const Eigen::VectorXd& x0,
                                        const Eigen::VectorXd& par, const FlowOptions& options) {
   if (options.method == IntegrationMethod::runge_kutta)
@@ -228,10 +215,9 @@ struct RungeKuttaFlow::Implementation {
   /// A share of the smallest state whose size is known, where that is small.
   static double absolute_tolerance(const FlowOptions& options) {
     if (are_usual(options.sizes)) return options.absolute_tolerance;
-    double smallest = 1.0;
-    for (const double size : options.sizes)
-      if (size > no_size) smallest = std::min(smallest, size);
-    return options.absolute_tolerance * smallest;
+    double least = 1.0;
+    for (const double size : options.sizes) least = std::min(least, size_for_tolerance(size));
+    return options.absolute_tolerance * least;
   }
 
   auto right_hand_side() {

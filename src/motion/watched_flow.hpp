@@ -30,7 +30,7 @@ struct FlowOptions {
   double max_duration = 1e3;        ///< give up waiting for an event after this time
   long max_steps = 100000;          ///< of the integrator, for one segment
   double surface_tolerance = 1e-9;  ///< |h| below this share of its scale: the start is on the event surface
-  Eigen::VectorXd sizes = {};       ///< of the states, n; none: 1 (EventAt::scale())
+  Eigen::VectorXd sizes = {};       ///< of the states, n; none: 1 (surface_scale())
   bool variational = true;          ///< integrate the flow Jacobian along
   std::vector<int> active;          ///< PAR indices, from 1, by which derivatives are wanted (needs `variational`)
 };
@@ -116,8 +116,7 @@ class EventWatch {
   // What is looked at at every step is kept here.
   std::vector<Watched> before_;
   std::vector<double> now_;
-  mutable Eigen::VectorXd f_;
-  mutable Eigen::RowVectorXd h_x_;
+  mutable Eigen::VectorXd f_, h_x_;
   std::vector<Contact> contacts_;
 };
 
@@ -159,9 +158,6 @@ class WatchedFlow {
   /// Why advance() failed.
   virtual const std::string& message() const = 0;
 };
-
-/// Are sizes of states, as far as they are known, such that absolute tolerances need not heed them: from 1/64 to 64?
-bool are_usual(const Eigen::VectorXd& sizes);
 
 /// By the method that `options` name. A view of `system`, which outlives the flow; `par` has the room of the problem's
 /// ParameterLayout.

@@ -118,31 +118,20 @@ double event_scale(const HybridSystem& system, const Orbit& x, int event) {
 }
 
 Eigen::VectorXd state_sizes(const HybridSystem& system, const Signature& signature, const Orbit& x) {
-  const int n = x.shape.dimension;
+  constexpr int parts = 16;
   const double* const par = x.par.data();
   StateSizes sizes(x.states);
-  Eigen::VectorXd values(n);
-  Eigen::MatrixXd by_state(n, n);
-  Eigen::RowVectorXd gradient(n);
   if (x.shape.stored_nodes() == 1) {
-    system.first(FunctionKind::field, signature.front().field, x.start(0), par, {}, values.data(), by_state.data(),
-                 nullptr);
-    sizes.add_rates_at_rest(values, by_state);
+    sizes.add_at_rest(system, signature.front().field, x.start(0), par);
     return sizes.sizes();
   }
-  const auto add = [&](FunctionKind kind, int index, const double* state) {
-    system.first(kind, index, state, par, {}, values.data(), by_state.data(), nullptr);
-    sizes.add_states(values, by_state);
-  };
   for (int s = 0; s < x.shape.segments; ++s) {
     const IndexVector& v = signature[static_cast<std::size_t>(s) % signature.size()];
-    const int step = std::max(1, x.shape.nodes_of(s) / 16);
-    for (int k = 0; k < x.shape.nodes_of(s); k += step) add(FunctionKind::field, v.field, x.node(s, k));
-    add(FunctionKind::jump, v.jump, x.end(s));
-    if (v.event == no_function) continue;
-    double h = 0.0;
-    system.first(FunctionKind::event, v.event, x.end(s), par, {}, &h, gradient.data(), nullptr);
-    sizes.add_event(h, gradient, x.end(s));
+    const int nodes = x.shape.nodes_of(s);
+    for (int k = 0; k < nodes; k += std::max(1, nodes / parts))
+      sizes.add(system, FunctionKind::field, v.field, x.node(s, k), par);
+    sizes.add(system, FunctionKind::jump, v.jump, x.end(s), par);
+    if (v.event != no_function) sizes.add(system, FunctionKind::event, v.event, x.end(s), par);
   }
   return sizes.sizes();
 }

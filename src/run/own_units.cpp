@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "model/scales.hpp"
 
 namespace tchat {
 
@@ -58,9 +59,9 @@ OwnUnits in_own_units(const HybridSystem& system, const RunSettings& settings, c
 }
 
 PathPoint in_users_units(const PathPoint& point, const Eigen::VectorXd& units) {
-  PathPoint result = point;
-  result.orbit.states = units.asDiagonal() * result.orbit.states;
-  if (result.tangent.states.size() > 0) result.tangent.states = units.asDiagonal() * result.tangent.states;
+  PathPoint result{point.orbit, point.tangent, {}, {}};
+  result.orbit.states = units.asDiagonal() * point.orbit.states;
+  if (point.tangent.states.size() > 0) result.tangent.states = units.asDiagonal() * point.tangent.states;
   return result;
 }
 
