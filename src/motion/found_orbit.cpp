@@ -168,24 +168,6 @@ FoundOrbit without_cuts(FoundOrbit orbit, std::vector<int> monitored) {
   return orbit;
 }
 
-StateSizes sizes_in(const HybridSystem& system, std::span<const SimulatedSegment> segments, const VectorXd& par) {
-  MatrixXd extremes(system.dimension(), 2 * std::ssize(segments));
-  Eigen::Index column = 0;
-  for (const SimulatedSegment& segment : segments) {
-    extremes.col(column++) = segment.low;
-    extremes.col(column++) = segment.high;
-  }
-  StateSizes sizes(extremes);
-  for (const SimulatedSegment& segment : segments) {
-    const auto [field, event, jump] = segment.index;
-    for (const VectorXd& x : {segment.start, segment.end})
-      sizes.add(system, FunctionKind::field, field, x.data(), par.data());
-    sizes.add(system, FunctionKind::jump, jump, segment.end.data(), par.data());
-    sizes.add(system, FunctionKind::event, event, segment.end.data(), par.data());
-  }
-  return sizes;
-}
-
 FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, const VectorXd& par,
                   const IndexVector& first, bool is_guess) {
   const std::vector<SimulatedSegment> turn = in_standard_order(result.turn, first);

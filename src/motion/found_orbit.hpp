@@ -3,11 +3,9 @@
 
 #include <Eigen/Core>
 #include <complex>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "model/scales.hpp"
 #include "motion/orbit_flow.hpp"
 #include "motion/simulation_run.hpp"
 
@@ -46,9 +44,6 @@ struct FoundOrbit {
 
   OrbitStability stability() const { return stability_of(multipliers, uncertainty); }
 };
-
-/// The sizes of the states in segments of a motion that have ended in events.
-StateSizes sizes_in(const HybridSystem& system, std::span<const SimulatedSegment> segments, const Eigen::VectorXd& par);
 
 /// A turn whose Poincare sections (identity jump, the same field after it) no longer end segments: each joins the
 /// segment after it. As it was when nothing else ends a segment. Samples and marks are not kept.

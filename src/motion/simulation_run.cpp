@@ -1,9 +1,9 @@
 #include "motion/simulation_run.hpp"
-#include "model/events.hpp"
 
 #include <limits>
 
 #include "linear/dense_matrix.hpp"
+#include "model/events.hpp"
 #include "orbit/equilibrium_system.hpp"
 
 namespace tchat {
@@ -302,6 +302,25 @@ bool fall_to_zero(const std::vector<double>& distances) {
 
 }  // namespace
 
+StateSizes sizes_in(const HybridSystem& system, std::span<const SimulatedSegment> segments, const VectorXd& par) {
+  MatrixXd extremes(system.dimension(), 2 * std::ssize(segments));
+  Eigen::Index column = 0;
+  for (const SimulatedSegment& segment : segments) {
+    extremes.col(column++) = segment.low;
+    extremes.col(column++) = segment.high;
+  }
+  StateSizes sizes(extremes);
+  for (const SimulatedSegment& segment : segments) {
+    const auto [field, event, jump] = segment.index;
+    for (const VectorXd& x : {segment.start, segment.end})
+      sizes.add(system, FunctionKind::field, field, x.data(), par.data());
+    if (event == 0) continue;
+    sizes.add(system, FunctionKind::jump, jump, segment.end.data(), par.data());
+    sizes.add(system, FunctionKind::event, event, segment.end.data(), par.data());
+  }
+  return sizes;
+}
+
 std::optional<VectorXd> reached_equilibrium(const HybridSystem& system, const SimulatedSegment& last,
                                             const VectorXd& par, const std::vector<Index>& ignorable,
                                             const VectorXd& sizes) {
@@ -309,7 +328,9 @@ std::optional<VectorXd> reached_equilibrium(const HybridSystem& system, const Si
   VectorXd f(last.end.size());
   system.value(FunctionKind::field, field, last.end.data(), par.data(), f.data());
   for (const Index k : ignorable) f(k) = 0.0;
-  if (!(in_sizes(f * last.duration, sizes) <= no_movement)) return std::nullopt;
+  // One that has been rounding of zero all along may do what it likes.
+  const VectorXd sizes_here = sizes.cwiseMax(sizes_in(system, {&last, 1}, par).sizes());
+  if (!(in_sizes(f * last.duration, sizes_here) <= no_movement)) return std::nullopt;
   return attracting_equilibrium(system, field, last.end, par, ignorable);
 }
 

@@ -8,10 +8,12 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "model/hybrid_system.hpp"
 #include "model/index_vector.hpp"
+#include "model/scales.hpp"
 #include "motion/hybrid_simulation.hpp"
 
 namespace tchat {
@@ -156,6 +158,9 @@ struct SimulationResult {
 SimulationResult run_simulation(HybridSimulation& simulation, const SimulationPlan& plan,
                                 const std::function<void(const SimulatedSegment&)>& kept,
                                 const std::function<bool(const SimulatedSegment&)>& has_settled = {});
+
+/// The sizes of the states in segments of a motion with or without an event at the end.
+StateSizes sizes_in(const HybridSystem& system, std::span<const SimulatedSegment> segments, const Eigen::VectorXd& par);
 
 // Whether a trajectory converges to an equilibrium of its field.
 
