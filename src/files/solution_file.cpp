@@ -24,7 +24,8 @@ std::vector<std::string> type_names(const LabelledSolution& solution) {
 std::vector<int> basic_types(const LabelledSolution& solution, const std::string& asked_for) {
   std::vector<int> types{basic_type(solution.type)};
   for (const UserPointKind& other : solution.further)
-    types.push_back(other.kind == UserPointKind::other_type ? other.index : static_cast<int>(PointType::user));
+    if (counts_beside(solution.type, other))
+      types.push_back(other.kind == UserPointKind::other_type ? other.index : static_cast<int>(PointType::user));
   std::stable_partition(types.begin(), types.end(), [&](int type) { return type_name(type) == asked_for; });
   return types;
 }

@@ -212,10 +212,20 @@ std::string type_name(int type, const UserPointKind& kind) {
   return found != nullptr ? found->name : "";
 }
 
+bool counts_beside(int type, const UserPointKind& other) {
+  const auto is_one_of = [](int number, PointType a, PointType b) {
+    return number == static_cast<int>(a) || number == static_cast<int>(b);
+  };
+  return !(is_one_of(basic_type(type), PointType::branch_point, PointType::equilibrium_branch_point) &&
+           other.kind == UserPointKind::other_type &&
+           is_one_of(other.index, PointType::fold, PointType::equilibrium_fold));
+}
+
 std::vector<std::string> type_names(int type, const UserPointKind& kind, const std::vector<UserPointKind>& further) {
   constexpr int user = static_cast<int>(PointType::user);
   std::vector<std::string> names{type_name(type, kind)};
   for (const UserPointKind& other : further) {
+    if (!counts_beside(type, other)) continue;
     const std::string name = type_name(other.kind == UserPointKind::other_type ? other.index : user, other);
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }

@@ -124,6 +124,10 @@ bool is_bifurcation(PointType type);
 /// "" for an ordinary point and unknown numbers.
 std::string type_name(int type, const UserPointKind& kind = {});
 
+/// Is a label of `type` also one of what vanishes there besides? Not a fold at a branch point, where a branch turns by
+/// its symmetry: no curve of folds starts there.
+bool counts_beside(int type, const UserPointKind& other);
+
 /// All names of a point that is several things at once, each once, its own first: {"GR", "UZ"}.
 std::vector<std::string> type_names(int type, const UserPointKind& kind, const std::vector<UserPointKind>& further);
 
