@@ -40,11 +40,13 @@ constexpr std::size_t history_length = 12;
 double beyond_level(const TestValue& test) { return std::abs(*test.value) > test.zero_level ? *test.value : 0.0; }
 
 /// A multiplier +1 where the bordered determinant changes sign is a branch point, no grazing-fold; a branch that turns
-/// where an end of a segment is tangent to its surface has the label of that. A resonance may have two functions.
+/// where an end of a segment is tangent to its surface has the label of that. A resonance may have two functions. A
+/// curve of folds of doubled orbits that meets its mirror image has no cusp there.
 bool is_the_same(const SpecialPoint& special, const SpecialPoint& other) {
   if (special.type != PointType::user && special.type == other.type) return true;
   constexpr auto velocity = UserPointKind::impact_velocity;
   if (special.kind.kind == velocity && other.kind.kind == velocity) return special.kind.segment == other.kind.segment;
+  if (special.type == PointType::doubled_fold_end && other.type == PointType::cusp) return true;
   return special.type == PointType::branch_point && other.kind.kind == UserPointKind::grazing_codimension_two &&
          other.kind.index == 1;
 }

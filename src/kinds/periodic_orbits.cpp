@@ -143,9 +143,9 @@ bool looks_for_cubic_terms(const PeriodicOrbitSystem& system, const RunSettings&
 BranchCurve fold(const PeriodicOrbitSystem& system, const RunSettings&, const SelectedStart& start) {
   return curve_of(system, std::make_unique<CriticalMultiplier>(system, start.start.orbit.shape, 1),
                   [&system](TestList& tests, const CriticalMultiplier& condition) {
+                    add_meetings(tests, system, fold_curve_meetings(system));
                     tests.push_back(cusp_test(condition));
                     tests.push_back(double_multiplier_test(PointType::resonance_1, condition));
-                    add_meetings(tests, system, fold_curve_meetings(system));
                   });
 }
 

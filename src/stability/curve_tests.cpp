@@ -50,6 +50,8 @@ class CuspTest final : public TestFunction {
     const OrbitVector& v = fold_.null_vector();
     return TestValue::of(fold_.cusp_function(), orbit_accuracy * std::sqrt(dot(gradient, gradient) * dot(v, v)));
   }
+  /// Where a segment ends tangentially the function has a pole.
+  bool is_genuine(const TestedPoint& point) const override { return touching_segment(point) < 0; }
   SpecialPoint classify(const TestedPoint& point, bool) const override {
     return {PointType::cusp, {}, false, "cusp", {}, codimension_two_text(point, PointType::cusp)};
   }
@@ -74,6 +76,14 @@ class DoubleMultiplierTest final : public TestFunction {
       level *= a * a;
     }
     return TestValue::of(result, level);
+  }
+  /// The multipliers, where they are known, show a second one.
+  bool is_genuine(const TestedPoint& point) const override {
+    if (!point.multipliers.determined()) return true;
+    const double target = type_ == PointType::resonance_1 ? 1.0 : -1.0;
+    const auto list = point.multipliers.nontrivial();
+    return std::count_if(list.begin(), list.end(),
+                         [target](const auto& mu) { return std::abs(mu - target) <= agreeing_multiplier; }) > 1;
   }
   SpecialPoint classify(const TestedPoint& point, bool) const override {
     return {type_, {}, false, name(), {}, codimension_two_text(point, type_)};
@@ -270,7 +280,8 @@ class CubicTermTest final : public TestFunction {
   TestValue evaluate(const TestedPoint& point) const override {
     const TestValue product = product_beside(point, 1, pair_);
     if (!product.value || point.condition == nullptr || touching_segment(point) >= 0) return TestValue::undefined();
-    const std::optional<Coefficient> form = solver_->find(point.condensed, point.orbit, *point.condition);
+    const std::optional<Coefficient> form =
+        solver_->find(point.condensed, point.orbit, *point.condition, point.multipliers);
     if (!form) return TestValue::undefined();
     const double factor = *product.value / (1.0 + std::abs(*product.value));
     return TestValue::of(form->value * factor, form->uncertainty * std::abs(factor));

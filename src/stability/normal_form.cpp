@@ -223,8 +223,20 @@ std::optional<NormalForm> normal_form(const DefiningSystem& system, const Orbit&
   return std::isfinite(form.uncertainty) ? std::optional(form) : std::nullopt;
 }
 
+namespace {
+
+/// By how much an error of the return map is larger in (target - A)^-1.
+double amplification(const FloquetMultipliers& multipliers, Complex target) {
+  double nearest = 1.0;
+  for (const Complex& mu : multipliers.nontrivial()) nearest = std::min(nearest, std::abs(mu - target));
+  return 1.0 / std::max(nearest, 1e-300);
+}
+
+}  // namespace
+
 std::optional<Coefficient> NormalFormSolver::find(CondensedSystem& condensed, const Orbit& x,
-                                                  const OrbitCondition& condition) {
+                                                  const OrbitCondition& condition,
+                                                  const FloquetMultipliers& multipliers) {
   if (x.shape.own || !condition.put_critical_vectors(vectors_)) return std::nullopt;
   const Complex critical = vectors_.multiplier / std::abs(vectors_.multiplier);
   if (!forms_ || shape_ != x.shape) {
@@ -238,7 +250,12 @@ std::optional<Coefficient> NormalFormSolver::find(CondensedSystem& condensed, co
   if (!forms_->factorize(condensed, x, 1.0) || !forms_->normalise(vectors_)) return std::nullopt;
   const Product sum = forms_->on_curve(vectors_, critical, condition.gradient(0), factor);
   if (!std::isfinite(sum.size)) return std::nullopt;
-  return Coefficient{sum.value.real(), error_of_sums(system_.system()) * sum.size};
+  double amplified = amplification(multipliers, 1.0);
+  if (critical.imag() != 0.0) amplified += amplification(multipliers, critical * critical);
+  const double accuracy = multiplier_accuracy(multipliers);
+  const double size = x.states.cwiseAbs().maxCoeff();
+  const double of_terms = (error_of_sums(system_.system()) + accuracy * amplified) * sum.size;
+  return Coefficient{sum.value.real(), of_terms + accuracy / (size * size)};
 }
 
 namespace {

@@ -121,15 +121,17 @@ std::optional<NormalForm> normal_form(const DefiningSystem& system, const Orbit&
 std::optional<BranchingForm> orbit_branching(const DefiningSystem& system, const Orbit& x);
 
 /// c or Re d at points of a curve of period doublings or torus bifurcations, from the linearisation that Newton's
-/// method has left there and from the vectors of the curve's condition. Without an estimate of the mesh's error: the
-/// uncertainty is that of sums and differences alone. Allocates at the first point of a shape, and where third
-/// derivatives are differences.
+/// method has left there and from the vectors of the curve's condition. The uncertainty is what the accuracy of the
+/// return map makes of the terms, and of solutions of (1 - A) h and (mu^2 - A) h near their poles; a coefficient which
+/// at the size of the orbit makes no more than that of a multiplier cannot be told from zero either. Allocates at the
+/// first point of a shape, and where third derivatives are differences.
 class NormalFormSolver {
  public:
   explicit NormalFormSolver(const DefiningSystem& system) : system_(system) {}
   /// `condition` is evaluated at x, whose linearisation is in `condensed`. Nothing where that has segments with meshes
   /// of their own, or equations are singular.
-  std::optional<Coefficient> find(CondensedSystem& condensed, const Orbit& x, const OrbitCondition& condition);
+  std::optional<Coefficient> find(CondensedSystem& condensed, const Orbit& x, const OrbitCondition& condition,
+                                  const FloquetMultipliers& multipliers);
 
  private:
   const DefiningSystem& system_;

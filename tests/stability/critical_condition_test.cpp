@@ -10,6 +10,7 @@
 #include "orbit/monitor.hpp"
 #include "orbit/monitor_gradient.hpp"
 #include "orbit/periodic_orbit_system.hpp"
+#include "stability/floquet_multipliers.hpp"
 #include "stability/normal_form.hpp"
 
 using namespace tchat;
@@ -249,7 +250,8 @@ TEST_CASE("cubic terms from the vectors of a condition are those from the vector
     auto condition = make_condition(at.system, x.shape);
     at.value(condition, x);
     NormalFormSolver solver(at.system);
-    const std::optional<Coefficient> on_curve = solver.find(at.condensed, x, condition);
+    const FloquetMultipliers multipliers = FloquetSolver(x.shape).compute(at.condensed, x);
+    const std::optional<Coefficient> on_curve = solver.find(at.condensed, x, condition, multipliers);
     const OrbitVector tangent = at.random_vector(at.condensed.make_vector());
     const std::optional<NormalForm> of_label = normal_form(at.system, x, tangent, multiplier);
     REQUIRE(on_curve);
