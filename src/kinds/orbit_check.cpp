@@ -7,6 +7,7 @@
 
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
+#include "orbit/admissibility.hpp"
 #include "resegment/contact_point.hpp"
 #include "settings/settings_type.hpp"
 
@@ -274,6 +275,7 @@ std::vector<SegmentCheck> check_segments(const HybridSystem& system, const RunSe
     SegmentCheck segment = check_segment(system, stored, x.par, scale, tolerance);
     if (s < following.cols())
       take_larger(segment.state_defect, jump_defect(system, index, x, s, following.col(s), scale));
+    segment.breaks_rules = s < following.cols() && !follows_rules(system, settings.signature(), x, s);
     checks.push_back(std::move(segment));
   }
   return checks;
@@ -358,7 +360,8 @@ std::vector<Defect> defects_of(const OrbitCheck& check, std::size_t s, double to
   const bool is_touched = segment.touches && segment.event_level <= allowed;
   if (!(segment.time_defect <= (is_touched ? std::sqrt(allowed) : allowed) * check.period))
     defects.push_back(Defect::time);
-  if (!segment.wrong.empty() || segment.leaves_surface || check.durations[s] < -allowed * check.period)
+  if (!segment.wrong.empty() || segment.leaves_surface || segment.breaks_rules ||
+      check.durations[s] < -allowed * check.period)
     defects.push_back(Defect::event);
   return defects;
 }

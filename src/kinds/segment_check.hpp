@@ -56,6 +56,7 @@ struct SegmentCheck {
   double event_level = 0.0;      ///< |h| / its size at x(T_s): the same as a distance
   bool touches = false;          ///< the terminal surface is met tangentially, to the tolerance
   bool leaves_surface = false;   ///< h_x f > 0 at the end: the event is crossed from below
+  bool breaks_rules = false;     ///< by those of the problem another segment follows
   IntegralValues integrals;      ///< of the problem's integrands; empty without `integrand`
   std::vector<EventMet> wrong;   ///< events met before the end that end or forbid the segment, in time
   std::vector<EventMet> passed;  ///< events met that change nothing (sections: the same field, the same state after it)

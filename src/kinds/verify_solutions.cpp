@@ -349,6 +349,7 @@ class Table {
       text += fmt::format(", but {} at t = {:.6g} comes first (depth {:.1e})", event_name(met.event),
                           met.time > 1e-9 * check.period ? met.time : 0.0, met.depth);
     if (segment.leaves_surface) text += ", crossed from below";
+    if (segment.breaks_rules) text += ", after which the problem's rules have another segment";
     if (check.durations[s] < 0.0 && segment.wrong.empty()) text += ", negative duration";
     if (!segment.passed.empty() && segment.wrong.empty())
       text += fmt::format(", passes {} at t = {:.6g}{}", event_name(segment.passed.front().event),

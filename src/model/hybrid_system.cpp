@@ -143,15 +143,18 @@ int HybridSystem::parameter_index(const std::string& name) const {
   return name == rotation_name ? layout().rotation() : 0;
 }
 
+int HybridSystem::successors(const IndexVector& from, const double* x, const double* par,
+                             std::span<std::int32_t> to) const {
+  if (!has_successors()) return -1;
+  const std::array<std::int32_t, 3> last{from.field, from.event, from.jump};
+  return table_->successors(table_->self, last.data(), x, par, to.data(), static_cast<int>(to.size() / 3));
+}
+
 std::optional<std::vector<IndexVector>> HybridSystem::successors(const IndexVector& from, const double* x,
                                                                  const double* par) const {
-  if (!has_successors()) return std::nullopt;
-  const std::array<std::int32_t, 3> last{from.field, from.event, from.jump};
   std::vector<std::int32_t> to(3 * 64);
-  const auto ask = [&] {
-    return table_->successors(table_->self, last.data(), x, par, to.data(), static_cast<int>(to.size() / 3));
-  };
-  std::int32_t count = ask();
+  const auto ask = [&] { return successors(from, x, par, to); };
+  int count = ask();
   if (static_cast<std::size_t>(std::max(count, 0)) > to.size() / 3) {
     if (count > 10000) return std::nullopt;
     to.resize(3 * static_cast<std::size_t>(count));

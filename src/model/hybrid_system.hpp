@@ -112,6 +112,8 @@ class HybridSystem {
   /// The index vectors that may follow a segment `from` that ends, before its jump, at x; from = (0, 0, 0): those at a
   /// start x. The one with priority first. Nothing when the problem has no such function or it cannot be evaluated.
   std::optional<std::vector<IndexVector>> successors(const IndexVector& from, const double* x, const double* par) const;
+  /// The same into `to`, three numbers each, without allocation: how many there are, negative where they are not known.
+  int successors(const IndexVector& from, const double* x, const double* par, std::span<std::int32_t> to) const;
 
   /// F, F_x (rows x dimension) and F_p (rows x active.size()); `active` lists PAR indices from 1. Central differences
   /// where the table has no derivatives.

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 
 #include "linear/array_kernel.hpp"
 #include "linear/memory.hpp"
@@ -77,6 +79,9 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
     if (end.rate > leaving * end.sizes)
       result.push_back({Violation::leaving_terminal_surface, s + 1, v.event, 1.0, end.rate});
   }
+  for (int s = 0; s < m && x.shape.stored_nodes() > 1; ++s)
+    if (!follows_rules(system, signature, x, s))
+      result.push_back({Violation::against_rules, s + 1, signature[static_cast<std::size_t>(s)].event, 1.0, 0.0});
   return result;
 }
 
@@ -85,6 +90,48 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
                                          const CollocationRule& rule, double error, double leaving) {
   return inadmissibilities(system, signature, monitored, x, event_courses(system, signature, monitored, rule, x), rule,
                            error, leaving);
+}
+
+namespace {
+
+/// Not where the rules, at x, have the same field and event with another jump. Other fields and events are the user's
+/// choice, and an event without a jump cuts the orbit.
+bool may_follow(const HybridSystem& system, const IndexVector& from, const IndexVector& to, const double* x,
+                const double* par) {
+  std::array<std::int32_t, 3 * 64> listed;
+  const int count = std::min(system.successors(from, x, par, listed), 64);
+  bool has_other_jump = false;
+  for (int v = 0; v < count; ++v) {
+    const IndexVector next{listed[3 * v], listed[3 * v + 1], listed[3 * v + 2]};
+    if (next == to) return true;
+    has_other_jump = has_other_jump || (next.field == to.field && next.event == to.event);
+  }
+  return !has_other_jump || is_identity_jump(system, to);
+}
+
+}  // namespace
+
+bool follows_rules(const HybridSystem& system, const Signature& signature, const Orbit& x, int s) {
+  constexpr double located = 1e-6;
+  const std::size_t m = signature.size();
+  const IndexVector& from = signature[static_cast<std::size_t>(s)];
+  const IndexVector& to = signature[(static_cast<std::size_t>(s) + 1) % m];
+  const bool is_last = s + 1 == x.shape.segments && system.boundary_conditions() > 0;
+  if (!system.has_successors() || is_last || from.event == no_function || to.event == no_function) return true;
+  if (lasts_no_time(x, s) || lasts_no_time(x, (s + 1) % x.shape.segments)) return true;
+  const double* par = x.par.data();
+  const Crossing end = crossing_of_event(system, from.event, from.field, x.end(s), par);
+  if (std::abs(end.transversality()) <= tangent_contact || may_follow(system, from, to, x.end(s), par)) return true;
+  Eigen::VectorXd beside = Eigen::Map<const Eigen::VectorXd>(x.end(s), x.shape.dimension);
+  for (double& state : beside)
+    for (const double sign : {1.0, -1.0}) {
+      const double own = state;
+      state += sign * located * x.states.row((&state - beside.data())).cwiseAbs().maxCoeff();
+      const bool may = may_follow(system, from, to, beside.data(), par);
+      state = own;
+      if (may) return true;
+    }
+  return false;
 }
 
 std::string describe(const Violation& violation, const HybridSystem& system) {
@@ -111,6 +158,10 @@ std::string describe(const Violation& violation, const HybridSystem& system) {
           "there",
           violation.segment, violation.event, system.function_name(FunctionKind::field, violation.event),
           violation.value);
+    case Violation::against_rules:
+      return fmt::format(
+          "segment {}: after event {} ({}) the problem's rules lead to another segment than the next one",
+          violation.segment, violation.event, system.function_name(FunctionKind::event, violation.event));
     default:
       return fmt::format("segment {}: h_x f = {:.4g} > 0 at its end, h{} ({}) is crossed from below", violation.segment,
                          violation.value, violation.event, system.function_name(FunctionKind::event, violation.event));

@@ -52,9 +52,10 @@ struct Violation {
     negative_duration,
     event_crossed,
     leaving_terminal_surface,
-    off_surface,             ///< a segment slides beside its surface
-    side_leads_away,         ///< a segment slides where one of the two fields leads away from the surface
-    crosses_where_it_slides  ///< a surface is crossed where both fields point at it
+    off_surface,              ///< a segment slides beside its surface
+    side_leads_away,          ///< a segment slides where one of the two fields leads away from the surface
+    crosses_where_it_slides,  ///< a surface is crossed where both fields point at it
+    against_rules             ///< the problem says what follows, and it is another index vector
   };
   Kind kind;
   int segment = 1;     ///< from 1
@@ -78,6 +79,13 @@ std::vector<Violation> inadmissibilities(const HybridSystem& system, const Signa
 
 /// "segment 1: h1 (wall) = -0.02 at tau = 0.31"
 std::string describe(const Violation& violation, const HybridSystem& system);
+
+// What the problem says that follows an event (its index jump function, lines `after EVENT if CONDITION` of formulas).
+
+/// May segment s + 1 follow segment s (from 0)? Not where the rules, at the state at its end and at all states beside
+/// it that are the same up to the accuracy of a located point, have another jump for its event in its field. All else
+/// is the user's choice: other fields, events that cut the orbit, segments of no duration, contacts.
+bool follows_rules(const HybridSystem& system, const Signature& signature, const Orbit& x, int s);
 
 // What a segment that slides, or one that crosses a surface on which orbits may slide, must do at its start.
 
