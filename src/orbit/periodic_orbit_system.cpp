@@ -152,7 +152,14 @@ double* ConservativeOrbitSystem::target_derivatives(int s, const Orbit& x, doubl
 }
 
 std::string ConservativeOrbitSystem::why_no_solution(const Orbit& x) const {
-  const std::string what = why_not_closed(x), why = what.empty() ? why_not_constant(x) : what;
+  const std::string gap = why_not_closed(x), change = why_not_constant(x);
+  if (!gap.empty() && change.empty())
+    return fmt::format(
+        "NTST = {} does not resolve this orbit: {}, though {} is conserved at its states; raise NTST, or adapt the "
+        "mesh "
+        "(IAD=1)",
+        x.shape.intervals, gap, name_);
+  const std::string& why = gap.empty() ? change : gap;
   if (why.empty()) return "";
   return fmt::format(
       "CONSERVED = {0} is not conserved: {1}; remove CONSERVED (CONSERVED=) and free a parameter, or set the "
