@@ -29,11 +29,13 @@ void StabilityWatch::remember(const Point& point) {
 }
 
 std::optional<UnlabelledChange> StabilityWatch::add(const Point& point, bool is_reported) {
-  if (explains_change(point.special) || !point.multipliers.determined() || is_reported || !known_) {
-    if (explains_change(point.special))
-      known_.reset();
-    else
-      begin(point);
+  if (explains_change(point.special)) {
+    known_.reset();
+    return std::nullopt;
+  }
+  if (!point.multipliers.determined()) return std::nullopt;
+  if (is_reported || !known_) {
+    remember(point);
     return std::nullopt;
   }
   const StabilityChange change = stability_change(known_->multipliers, point.multipliers);

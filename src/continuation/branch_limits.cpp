@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "continuation/newton_chord.hpp"
+#include "continuation/orbit_trend.hpp"
 #include "continuation/solution_measure.hpp"
 #include "linear/dense_matrix.hpp"
 #include "linear/memory.hpp"
@@ -42,8 +43,18 @@ double rate_at(const Eigen::VectorXd& f, const Eigen::MatrixXd& fx, double time,
   return std::max(perturbations, std::abs(of_flow));
 }
 
-/// Of which intervals of a segment.
-enum class Which { all, last };
+/// Of which intervals of a segment: `moving` are all but those on which the orbit rests at an equilibrium.
+enum class Which { all, moving, last };
+
+/// Does any state move by a visible share of its range on interval j of segment s?
+bool moves(const Orbit& x, int s, int j, const Eigen::VectorXd& ranges) {
+  constexpr double visible = 1e-3;
+  const double* from = x.node(s, j * x.shape.collocation);
+  const double* to = x.node(s, (j + 1) * x.shape.collocation);
+  for (Eigen::Index k = 0; k < ranges.size(); ++k)
+    if (std::abs(to[k] - from[k]) > visible * ranges(k)) return true;
+  return false;
+}
 
 /// The largest z of the orbit's mesh intervals, 0 where none exceeds `least`, which is cheap to see.
 double largest_growth(const DefiningSystem& system, const Orbit& x, Which which, Rate rate, double least) {
@@ -52,6 +63,7 @@ double largest_growth(const DefiningSystem& system, const Orbit& x, Which which,
   StackVector f(n);
   StackMatrix fx(n, n);
   double largest = 0.0;
+  const Eigen::VectorXd ranges = which == Which::moving ? state_ranges(x) : Eigen::VectorXd();
   for (int s = 0; s < x.shape.segments; ++s) {
     const int field = system.signature()[static_cast<std::size_t>(s)].field;
     const auto growth_at = [&](int mesh_point, double time) {
@@ -60,7 +72,8 @@ double largest_growth(const DefiningSystem& system, const Orbit& x, Which which,
       return fx.allFinite() && fx.norm() * time > least ? rate_at(f, fx, time, rate) * time : 0.0;
     };
     const int intervals = x.shape.intervals_of(s);
-    for (int j = which == Which::all ? 0 : intervals - 1; j < intervals; ++j) {
+    for (int j = which == Which::last ? intervals - 1 : 0; j < intervals; ++j) {
+      if (which == Which::moving && !moves(x, s, j, ranges)) continue;
       const double time = (x.mesh_of(s)[j + 1] - x.mesh_of(s)[j]) * x.duration(s);
       const double left = growth_at(j, time);
       if (left > std::max(largest, least)) largest = std::max(largest, std::min(left, growth_at(j + 1, time)));
@@ -79,14 +92,16 @@ std::string unresolved_by_mesh(const DefiningSystem& system, const Orbit& x, con
   };
   if (!(data.estimated_error <= bound)) return text("the estimated relative error", data.estimated_error);
   const FloquetMultipliers& multipliers = data.multipliers;
-  if (!(multipliers.structural <= bound))
+  if (!multipliers.is_flow_lost && !(multipliers.structural <= bound))
     return text(multipliers.has_trivial ? "the trivial multiplier's distance from 1" : "the structural multiplier",
                 multipliers.structural);
   if (!multipliers.valid) return "";
   const double limit = resolved_growth(x.shape.collocation);
-  const double growth = count_unstable(multipliers).outside > 0
-                            ? largest_growth(system, x, Which::all, Rate::of_perturbations_and_flow, limit)
-                            : largest_growth(system, x, Which::last, Rate::of_decaying_flow, limit);
+  const bool is_unstable = count_unstable(multipliers).outside > 0;
+  const bool counts_all = is_unstable || multipliers.is_flow_lost;
+  const Which which = is_unstable ? Which::all : counts_all ? Which::moving : Which::last;
+  const Rate rate = counts_all ? Rate::of_perturbations_and_flow : Rate::of_decaying_flow;
+  const double growth = largest_growth(system, x, which, rate, limit);
   if (growth == 0.0) return "";
   return fmt::format(
       "NTST = {} does not resolve the next orbit: perturbations or the flow change by a factor of exp({:.3g}) "
@@ -94,19 +109,14 @@ std::string unresolved_by_mesh(const DefiningSystem& system, const Orbit& x, con
       x.shape.intervals, growth, x.shape.collocation, limit);
 }
 
-double growth_exponent(const DefiningSystem& system, const Orbit& x) {
-  const int n = x.shape.dimension;
-  Eigen::VectorXd f(n);
-  Eigen::MatrixXd fx(n, n);
-  double exponent = 0.0;
-  for (int s = 0; s < x.shape.segments; ++s)
-    for (int j = 0; j < x.shape.intervals_of(s); ++j) {
-      const double time = (x.mesh_of(s)[j + 1] - x.mesh_of(s)[j]) * x.duration(s);
-      system.system().first(FunctionKind::field, system.signature()[static_cast<std::size_t>(s)].field,
-                            x.node(s, j * x.shape.collocation), x.par.data(), {}, f.data(), fx.data(), nullptr);
-      if (fx.allFinite()) exponent += std::max(eigenvalues(fx).real().maxCoeff() * time, 0.0);
-    }
-  return exponent;
+std::string lost_multiplier(const OrbitCondition* condition, const PointData& data) {
+  const std::optional<int> kept = condition != nullptr ? condition->kept_multiplier() : std::nullopt;
+  const FloquetMultipliers& multipliers = data.multipliers;
+  if (!kept || !multipliers.determined() || multiplier_accuracy(multipliers) > structural_bound) return "";
+  if (touching_segment(data.transversalities) >= 0) return "";
+  const double distance = multiplier_distance(multipliers, *kept);
+  if (distance <= agreeing_multiplier) return "";
+  return fmt::format("no multiplier is {:+d} any more (the nearest is {:.3g} away from it)", *kept, distance);
 }
 
 std::string undetermined_duration(const DefiningSystem& system, const Orbit& x) {

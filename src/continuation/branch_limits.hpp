@@ -22,19 +22,21 @@ class DefiningSystem;
 
 /// Which figure of accuracy exceeds `bound` (ERRMAX; 0: none does), with its value, or "". The figures are
 ///   - the estimated error of the orbit (orbit/collocation_rule.hpp),
-///   - the structural multiplier, or the trivial one's distance from 1, where multipliers are computed,
+///   - the structural multiplier, or the trivial one's distance from 1, where multipliers are computed and not lost at
+///     an equilibrium (FloquetMultipliers::is_flow_lost),
 ///   - the factor exp(z) by which perturbations grow, or the flow grows or decays, on one mesh interval. Here z is
 ///     h T |Re lambda| with an eigenvalue lambda of f_x, where one of them grows by more than exp(1) on the interval,
 ///     or h T |d ln |f| / dt|, the lesser of the values at both ends. Collocation at c Gauss points has the relative
 ///     error (c!)^2 / ((2c)! (2c+1)!) z^(2c+1) of this factor. Where it exceeds 1, multipliers and durations are those
 ///     of the mesh. It counts for orbits with a multiplier outside of the unit circle: the others contract local
 ///     errors, as relaxation oscillations do. Of those only the decay of |f| on the last interval of a segment counts,
-///     on which the time of the event depends.
+///     on which the time of the event depends. Where multipliers are lost it counts on intervals on which the orbit
+///     moves: resting, it is known better than what grows beside it.
 std::string unresolved_by_mesh(const DefiningSystem& system, const Orbit& x, const PointData& data, double bound);
 
-/// Rounding of the orbit is magnified by exp(this) on the way round: the integral of the largest growth rate of f_x,
-/// where it is positive. Multipliers are known to about 1e-16 times that factor.
-double growth_exponent(const DefiningSystem& system, const Orbit& x);
+/// Why a point is none of a curve that keeps a real multiplier at 1 or -1, "" where it may be one: the condition's
+/// function vanishes also where segments last no time and end tangentially, without such a multiplier.
+std::string lost_multiplier(const OrbitCondition* condition, const PointData& data);
 
 /// "" or that a segment ends at rest to within rounding, |f| T below 1e-12 of the states: its duration is not
 /// determined.

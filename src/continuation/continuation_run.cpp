@@ -54,6 +54,14 @@ std::vector<std::unique_ptr<TestFunction>> with_bounds(std::vector<std::unique_p
   return tests;
 }
 
+/// Do the multipliers alone show a fold? In a canard explosion the parameter hardly moves.
+bool has_multiplier_one(const PointData& data) {
+  constexpr double accurate = 1e-3, near = 1e-2;
+  const FloquetMultipliers& multipliers = data.multipliers;
+  return multipliers.determined() && !multipliers.are_eigenvalues && multiplier_accuracy(multipliers) <= accurate &&
+         multiplier_distance(multipliers, 1.0) <= near;
+}
+
 /// "the bounds RL0, RL1", or BOUNDS, which says it.
 std::string bounds_text(const BranchBounds& bounds) {
   return (bounds.least_keyword == bounds.most_keyword ? "" : "the bounds ") + bounds.keywords();
@@ -208,7 +216,7 @@ SpecialPoint ContinuationRun::advance() {
   }
   const double level = insignificant_turn * steepest_;
   const double earlier = std::exchange(before_, before);
-  const bool is_visible = turn > level || std::max(before, earlier) > sudden * level;
+  const bool is_visible = turn > level || std::max(before, earlier) > sudden * level || has_multiplier_one(next_.data);
   if (is_fold(special.type) && !(is_visible && turns_visibly(parameter_at(next_.point)))) {
     reports.note(fmt::format("ICP(1) turns by rounding only (its share of the tangent is {:.1e}): no fold", turn));
     return {};
@@ -323,6 +331,8 @@ bool ContinuationRun::take_step() {
       trouble = "it may have come to another branch";
     else if (search_.evaluate(next_.point, next_.data); !step_.is_short() && !search_.resolved(here_, next_))
       trouble = "a test function may have changed sign twice";
+    else if (std::string lost = lost_multiplier(follower_.condition(), next_.data); !step_.is_short() && !lost.empty())
+      trouble = std::move(lost);
     else
       return true;
     if (!converged && is_moved_ && here_.orbit.mesh != accepted_.orbit.mesh) {
@@ -396,11 +406,7 @@ void ContinuationRun::accept(const SpecialPoint& special) {
   if (settings_.reports_stability) {
     const bool is_reported = summary_.lost.size() > lost_before_;
     const auto change = stability_.add({number_, parameter_at(here_), special, next_.data.multipliers}, is_reported);
-    constexpr double most_growth = 30.0;  // rounding is then 1e-3 of a multiplier
-    if (const double growth = change ? growth_exponent(system_, here_.orbit) : 0.0; growth > most_growth)
-      sink_.note(number_,
-                 fmt::format("Multipliers are not known: rounding grows by exp({:.3g}) on the way round", growth));
-    else if (change && change->is_through_one && !follower_.held().empty())
+    if (change && change->is_through_one && !follower_.held().empty())
       sink_.note(number_, fmt::format("At fixed parameters {}; a curve that holds monitors need have none there",
                                       change->point.text));
     else if (change)
@@ -454,8 +460,13 @@ void ContinuationRun::record(const SpecialPoint& special, const PointData& data)
   summary_.inadmissible_points += !violations.empty();
   summary_.multipliers_computed = settings_.multipliers;
   summary_.critical_curve = follower_.condition() != nullptr;
-  summary_.unstable_points += settings_.multipliers && !data.multipliers.stable();
-  summary_.worst_structural = std::max(summary_.worst_structural, data.multipliers.structural);
+  if (settings_.multipliers) {
+    const Stability stability = data.multipliers.stability();
+    summary_.unstable_points += stability == Stability::unstable;
+    summary_.undetermined_points += stability == Stability::unknown;
+  }
+  if (!data.multipliers.is_flow_lost)
+    summary_.worst_structural = std::max(summary_.worst_structural, data.multipliers.structural);
   summary_.has_trivial = data.multipliers.has_trivial;
   if (const std::optional<double> lambda = system_.unfolding(here_.orbit); lambda && system_.conserved_quantities() > 0)
     summary_.worst_unfolding = std::max(summary_.worst_unfolding.value_or(0.0), std::abs(*lambda));
@@ -469,8 +480,14 @@ void ContinuationRun::end(EndReason reason, std::string detail) {
   summary_.detail = std::move(detail);
 }
 
+/// Where multipliers are lost and the parameter stands still to its accuracy, what changes sign is rounding.
 void ContinuationRun::report_lost(const std::string& text) {
-  report({number_ + 1, text, parameter_at(here_), parameter_at(next_.point)});
+  const double from = parameter_at(here_), to = parameter_at(next_.point);
+  const bool stands_still = std::abs(to - from) <= orbit_accuracy * std::max(std::abs(from), std::abs(to));
+  if (next_.data.multipliers.is_flow_lost && stands_still)
+    sink_.note(number_ + 1, text);
+  else
+    report({number_ + 1, text, from, to});
 }
 
 void ContinuationRun::report(const LostPoint& point) {
@@ -533,6 +550,8 @@ void ContinuationRun::write_last_again(PointType type) {
 bool ContinuationRun::may_go_to_next() {
   if (const std::string passed = passed_end(); !passed.empty()) {
     end(EndReason::no_orbit, passed);
+  } else if (const std::string lost = lost_multiplier(follower_.condition(), next_.data); !lost.empty()) {
+    end(EndReason::curve_end, fmt::format("beyond this point {}: there the curve ends", lost));
   } else {
     const std::string exceeded = exceeded_bound(next_);
     if (exceeded.empty()) return true;

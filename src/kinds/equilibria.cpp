@@ -45,7 +45,6 @@ class EquilibriumFamily final : public SolutionFamily {
                                     .lost_advice = "  you might: lower DSMAX; EPSL and EPSU smaller than EPSS\n",
                                     .structural_advice = ""},
                         .doubles_mesh = false,
-                        .reports_stability = false,
                         .has_return_map = false}) {}
 
   OrbitShape shape(const RunSettings& settings) const override { return OrbitShape::point(settings.dimension); }

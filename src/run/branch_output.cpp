@@ -29,6 +29,9 @@ std::vector<std::unique_ptr<BranchOutput>> branch_outputs(const BranchSection& s
 
 namespace {
 
+/// Uncertainties of multipliers up to this are not told.
+constexpr double shown_uncertainty = 1e-7;
+
 /// The header of a section is written with its first point, for AUTO's reader refuses a header without points.
 class PointFileOutput final : public BranchOutput {
  public:
@@ -174,6 +177,9 @@ class DiagnosticsFileOutput final : public BranchOutput {
     if (known.valid)
       text = known.are_eigenvalues ? format_eigenvalues(known.values, known.stable_count())
                                    : format_multipliers(known.values);
+    if (known.valid && known.uncertainty > shown_uncertainty)
+      text += format_note(point.line.branch, point.line.point,
+                          fmt::format("multipliers are known to {:.1e} only", known.uncertainty));
     if (!point.unknown_multipliers.empty())
       text += format_note(point.line.branch, point.line.point, point.unknown_multipliers);
     return text;

@@ -39,9 +39,10 @@ BranchSection first_section(const HybridSystem& system, const BranchWriter::Setu
 /// "" when all multipliers are known.
 std::string undetermined_text(const FloquetMultipliers& multipliers) {
   if (multipliers.undetermined == 0) return "";
-  return fmt::format("{} not determined (0/0 where h_x f = 0), left out",
-                     multipliers.undetermined == 1 ? "one multiplier is"
-                                                   : fmt::format("{} multipliers are", multipliers.undetermined));
+  return fmt::format(
+      "{} not determined ({}), left out",
+      multipliers.undetermined == 1 ? "one multiplier is" : fmt::format("{} multipliers are", multipliers.undetermined),
+      multipliers.is_flow_lost ? "errors grow too much along the orbit" : "0/0 where h_x f = 0");
 }
 
 /// What a label is, and what of it is not known.
@@ -138,6 +139,9 @@ void BranchWriter::write(const BranchPoint& point) {
   line_.admissible = point.violations.empty();
   line_.label = point.labelled() ? ++last_label_ : 0;
   find_column_values(point);
+  largest_values_.resize(line_.values.size(), 0.0);
+  for (std::size_t k = 0; k < largest_values_.size(); ++k)
+    largest_values_[k] = std::max(largest_values_[k], std::abs(line_.values[k]));
   const RecordedPoint recorded{point, line_, undetermined_text(point.multipliers)};
   for (const auto& output : outputs_) output->point(recorded);
   report_unknown_user_values(line_);
@@ -161,14 +165,19 @@ void BranchWriter::report_unknown_user_values(const PointLine& line) {
   }
 }
 
-/// Of the parameters. What is too small for the full precision of a double is rounding.
+/// Of the parameters. What is too small for the full precision of a double is rounding, and so is what is far below
+/// the accuracy of a value that has been larger on the branch.
 std::string BranchWriter::place(const PointLine& line) const {
+  constexpr double rounding = 1e-12;
   std::string text;
-  for (std::size_t k = 0; k < section_.columns.size(); ++k)
-    if (const PointColumn& column = section_.columns[k];
-        column.kind == PointColumn::Kind::parameter && (k == 0 || is_parameter(section_.settings, column.index)))
-      text += fmt::format("{}{} = {:.10g}", text.empty() ? "" : ", ", shown_name(column),
-                          std::abs(line.values[k]) < std::numeric_limits<double>::min() ? 0.0 : line.values[k]);
+  for (std::size_t k = 0; k < section_.columns.size(); ++k) {
+    const PointColumn& column = section_.columns[k];
+    if (column.kind != PointColumn::Kind::parameter || (k > 0 && !is_parameter(section_.settings, column.index)))
+      continue;
+    const double least = std::max(std::numeric_limits<double>::min(), rounding * largest_values_[k]);
+    text += fmt::format("{}{} = {:.10g}", text.empty() ? "" : ", ", shown_name(column),
+                        std::abs(line.values[k]) < least ? 0.0 : line.values[k]);
+  }
   return text;
 }
 
@@ -177,7 +186,7 @@ std::string BranchWriter::place(const PointLine& line) const {
 /// stability says nothing.
 bool BranchWriter::shown_stable(const BranchPoint& point) {
   if (section_.curve_type != 0) return false;
-  const bool unknown = is_bifurcation(point.special.type) || point.multipliers.undetermined > 0;
+  const bool unknown = is_bifurcation(point.special.type) || point.multipliers.stability() == Stability::unknown;
   if (!unknown || point.number == 1) last_stable_ = point.multipliers.stable();
   return last_stable_;
 }
@@ -342,14 +351,21 @@ std::string special_points(const std::vector<BranchWriter::Labelled>& labels, co
   return text;
 }
 
+std::string stability_counts(const BranchSummary& summary) {
+  const int stable = summary.points - summary.unstable_points - summary.undetermined_points;
+  const char* but = summary.without_contact ? " but for the contact" : "";
+  if (summary.undetermined_points == 0)
+    return fmt::format(", {} stable and {} unstable{}", stable, summary.unstable_points, but);
+  return fmt::format(", {} stable, {} unstable{} and {} of unknown stability", stable, summary.unstable_points, but,
+                     summary.undetermined_points);
+}
+
 }  // namespace
 
 std::string summary_text(const BranchSummary& summary, const std::vector<BranchWriter::Labelled>& labels,
                          const std::string& parameter, const std::string& output, const NextCommand& next) {
   std::string text = fmt::format("\n{} points", summary.points);
-  if (summary.multipliers_computed && !summary.critical_curve)
-    text += fmt::format(", {} stable and {} unstable{}", summary.points - summary.unstable_points,
-                        summary.unstable_points, summary.without_contact ? " but for the contact" : "");
+  if (summary.multipliers_computed && !summary.critical_curve) text += stability_counts(summary);
   text += labels_text(labels, output) + ".\n" + special_points(labels, next);
   const bool told = std::any_of(labels.begin(), labels.end(), [&summary](const BranchWriter::Labelled& label) {
     return label.type == "MX" && label.description == summary.detail;

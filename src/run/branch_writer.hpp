@@ -80,6 +80,7 @@ class BranchWriter final : public BranchSink {
   int last_label_;
   Eigen::VectorXd units_;
   bool last_stable_ = false;
+  std::vector<double> largest_values_;  // of each column, so far
   std::set<int> reported_user_functions_;
 };
 

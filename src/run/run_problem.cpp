@@ -270,6 +270,7 @@ class Direction {
   static BranchSummary joined(const BranchSummary& before, BranchSummary after) {
     after.inadmissible_points += before.inadmissible_points;
     after.unstable_points += before.unstable_points;
+    after.undetermined_points += before.undetermined_points;
     after.multipliers_computed = before.multipliers_computed;
     after.has_trivial = before.has_trivial;
     after.worst_structural = std::max(before.worst_structural, after.worst_structural);

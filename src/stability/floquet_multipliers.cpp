@@ -54,7 +54,7 @@ constexpr double stability_tolerance = 1e-5;
 constexpr double eigenvalue_rounding = 1e-14;
 /// h_x f / (|h_x| |f|) below which a multiplier may be 0/0: with errors of `no_transversality` it is then off by 1e-5.
 constexpr double near_grazing = 1e-4;
-/// A multiplier that such an error moves further, as a chord of the Riemann sphere, is not known.
+/// A multiplier that an error moves further, as a chord of the Riemann sphere where h_x f = 0, is not known.
 constexpr double unknown = 1e-2;
 /// A larger one at h_x f = 0 is infinite.
 constexpr double large = 1e6;
@@ -62,6 +62,11 @@ constexpr double large = 1e6;
 /// Distance on the Riemann sphere, where infinity is a point like others.
 double chord(const std::complex<double>& a, const std::complex<double>& b) {
   return std::abs(a - b) / (std::hypot(1.0, std::abs(a)) * std::hypot(1.0, std::abs(b)));
+}
+
+/// |a - b| within the unit circle, relative to the smaller one of the two beyond it.
+double relative_distance(const std::complex<double>& a, const std::complex<double>& b) {
+  return std::abs(a - b) / std::max(1.0, std::min(std::abs(a), std::abs(b)));
 }
 
 /// Determinant of [Z, v / |v|], but for (-1)^(n-1): the columns of Z are those but the first of a reflection that takes
@@ -167,6 +172,8 @@ FloquetSolver::FloquetSolver(const OrbitShape& shape)
       square_(shape.dimension, shape.dimension),
       flow_rows_(2 * shape.dimension, shape.dimension + 1) {
   for (SegmentEnd& end : ends_) {
+    end.tilt.setZero(shape.dimension - 1);
+    end.e_across = end.a_across = end.tilt.transpose();
     end.section.resize(shape.dimension);
     end.jump.resize(shape.dimension, shape.dimension);
   }
@@ -193,6 +200,9 @@ void FloquetSolver::measure_end(const CondensedSystem& condensed, const Orbit& x
   const double section_image = make_reflection(end.section);
   end.projection = image_;
   const double flow_image = make_reflection(end.projection);
+  image_.noalias() = first * f0_;
+  reflect(end.projection, image_);
+  end.tilt = image_.tail(n - 1) / image_(0);
   square_ = last;
   end.determinant_share = determinant_share(square_, speed, section_image, flow_image);
 
@@ -216,10 +226,12 @@ void FloquetSolver::project_blocks(const CondensedSystem& condensed, int s) {
   reflect(end.section, square_.transpose());
   reflect(end.projection, square_);
   blocks_.e[at] = square_.bottomRightCorner(n - 1, n - 1);
+  ends_[at].e_across = square_.row(0).tail(n - 1);
   auto product = square_.rightCols(n - 1);
   product.noalias() = first * entering;
   reflect(end.projection, product);
   blocks_.a[at] = -product.bottomRows(n - 1);
+  ends_[at].a_across = -product.row(0);
 }
 
 /// The blocks, with entries disturbed by this share of the blocks that they are projected from: what is left of these
@@ -238,6 +250,27 @@ FloquetSolver::Blocks FloquetSolver::disturbed(double disturbance, int way) cons
     disturb(blocks.e[s], e_sizes_[s]);
   }
   return blocks;
+}
+
+/// Those of the other direction.
+void FloquetSolver::tilt_blocks() {
+  tilted_ = blocks_;
+  for (std::size_t s = 0; s < ends_.size(); ++s) {
+    tilted_.e[s].noalias() -= ends_[s].tilt * ends_[s].e_across;
+    tilted_.a[s].noalias() -= ends_[s].tilt * ends_[s].a_across;
+  }
+}
+
+/// May the two directions make a difference? Not where the flow stands still and there is none.
+bool FloquetSolver::is_tilted() const {
+  constexpr double none = 1e-7;
+  for (std::size_t s = 0; s < ends_.size(); ++s) {
+    const double tilt = ends_[s].tilt.norm();
+    const double share = std::max(ends_[s].e_across.norm() / blocks_.e[s].norm(),  //
+                                  ends_[s].a_across.norm() / blocks_.a[s].norm());
+    if (std::isinf(tilt) || tilt * share > none) return true;
+  }
+  return false;
 }
 
 /// Of the product of E_s^-1 A'_s; none when the iteration fails.
@@ -259,25 +292,42 @@ void FloquetSolver::find_eigenvalues(const Blocks& blocks, std::vector<std::comp
   conjugate_pairs(values);
 }
 
+/// Leaves out multipliers that are farther than `most` from those among others_, and returns the largest distance of
+/// the rest.
+double FloquetSolver::keep_known(Distance distance, double most, FloquetMultipliers& result) {
+  std::size_t known = 0;
+  double largest = 0.0;
+  for (const auto& mu : result.values) {
+    const auto nearer = [&](const auto& a, const auto& b) { return distance(a, mu) < distance(b, mu); };
+    const auto nearest = std::min_element(others_.begin(), others_.end(), nearer);
+    if (nearest == others_.end() || !(distance(*nearest, mu) <= most)) continue;
+    largest = std::max(largest, distance(*nearest, mu));
+    others_.erase(nearest);
+    result.values[known++] = mu;
+  }
+  result.undetermined += static_cast<int>(result.values.size() - known);
+  result.values.resize(known);
+  return largest;
+}
+
 /// Those that are elsewhere when everything is known a little less well, in any of several ways: what is noise may come
 /// out near the same place once.
 void FloquetSolver::leave_out_undetermined(FloquetMultipliers& result) {
   constexpr int ways = 5;
-  const std::size_t all = result.values.size();
   for (int way = 1; way <= ways; ++way) {
-    std::vector<std::complex<double>> others;
-    find_eigenvalues(disturbed(no_transversality, way), others);
-    std::vector<std::complex<double>> known;
-    for (const auto& mu : result.values) {
-      const auto nearer = [&mu](const auto& a, const auto& b) { return chord(a, mu) < chord(b, mu); };
-      const auto nearest = std::min_element(others.begin(), others.end(), nearer);
-      if (nearest == others.end() || chord(*nearest, mu) > unknown) continue;
-      known.push_back(mu);
-      others.erase(nearest);
-    }
-    result.values = std::move(known);
+    find_eigenvalues(disturbed(no_transversality, way), others_);
+    keep_known(&chord, unknown, result);
   }
-  result.undetermined = static_cast<int>(all - result.values.size());
+}
+
+void FloquetSolver::compare_with_tilted(bool touches, FloquetMultipliers& result) {
+  if (!is_tilted()) return;
+  tilt_blocks();
+  find_eigenvalues(tilted_, others_);
+  const int before = result.undetermined;
+  result.uncertainty =
+      touches ? keep_known(&chord, unknown, result) : keep_known(&relative_distance, structural_bound, result);
+  result.is_flow_lost = result.undetermined > before;
 }
 
 /// Zeros of states that a mode on the way has not.
@@ -325,6 +375,8 @@ void FloquetSolver::compute(const CondensedSystem& condensed, const Orbit& x, Fl
 
   result.has_trivial = false;
   result.undetermined = 0;
+  result.uncertainty = 0.0;
+  result.is_flow_lost = false;
   result.with_one = result.with_minus_one = {};
   result.structural = std::isfinite(structural) ? std::min(structural, infinite_multiplier) : infinite_multiplier;
   find_eigenvalues(blocks_, result.values);
@@ -334,6 +386,7 @@ void FloquetSolver::compute(const CondensedSystem& condensed, const Orbit& x, Fl
   const bool touches = least_transversality < near_grazing;
   form_products(touches, result);
   if (touches) leave_out_undetermined(result);
+  compare_with_tilted(touches, result);
   if (least_transversality <= no_transversality && !result.values.empty()) {
     const auto by_size = [](const auto& a, const auto& b) { return std::abs(a) < std::abs(b); };
     const auto largest = std::max_element(result.values.begin(), result.values.end(), by_size);

@@ -64,6 +64,11 @@ Eigen::MatrixXd return_matrix(const CondensedSystem& condensed, const Orbit& x, 
 // discretisation sees it: the least relative change of f(x_s(0)) and f(x_s(1)) with which Phi_s takes one to the
 // other, on the worst segment. It is 0 for the exact flow, and an error figure of the mesh.
 //
+// F_s is known from C_s f(x_s(1)), and as well from -A_s f(x_s(0)), the same vector. Where an orbit passes a saddle
+// both are tiny: what an error of the orbit, which grows on the way, makes of their direction may be all of it, and the
+// multipliers are noise while the structural one is small. The two directions tell it: multipliers that differ where
+// F_s is taken from the other one are not known.
+//
 // An orbit without a section is cut by the plane across the flow. What is printed then in place of the zero is its
 // trivial multiplier as the discretisation has it: of all t the one that comes nearest to A f(x(0)) + t C f(x(1)) = 0,
 // 1 for the exact flow.
@@ -82,13 +87,15 @@ class FloquetSolver {
   /// What the end of one segment contributes. Z_s and F_s are all columns but the first of reflections, which take h_x
   /// and C_s f to multiples of the first unit vector.
   struct SegmentEnd {
-    Eigen::VectorXd section;          // of the reflection with Z_s
-    Eigen::VectorXd projection;       // of the reflection with F_s
-    Eigen::MatrixXd jump;             // g_x times the former: its columns but the first are g_x Z_s
-    double transversality = 0.0;      // a_s = h_x f / (|h_x| |f|)
-    ScaledReal determinant_share;     // det E_s / a_s
-    double flow_defect = 0.0;         // part of the structural zero
-    double trivial_multiplier = 0.0;  // of an end without a section
+    Eigen::VectorXd section;                // of the reflection with Z_s
+    Eigen::VectorXd projection;             // of the reflection with F_s
+    Eigen::MatrixXd jump;                   // g_x times the former: its columns but the first are g_x Z_s
+    double transversality = 0.0;            // a_s = h_x f / (|h_x| |f|)
+    ScaledReal determinant_share;           // det E_s / a_s
+    double flow_defect = 0.0;               // part of the structural zero
+    Eigen::VectorXd tilt;                   // what F_s is to be given of the direction C_s f to be orthogonal to A_s f
+    Eigen::RowVectorXd e_across, a_across;  // that direction's row beside E_s, A'_s
+    double trivial_multiplier = 0.0;        // of an end without a section
   };
   struct Blocks {
     std::vector<Eigen::MatrixXd> e, a;
@@ -96,15 +103,22 @@ class FloquetSolver {
   void measure_end(const CondensedSystem& condensed, const Orbit& x, int s);
   void project_blocks(const CondensedSystem& condensed, int s);
   Blocks disturbed(double disturbance, int way) const;
+  void tilt_blocks();
+  bool is_tilted() const;
+  void compare_with_tilted(bool touches, FloquetMultipliers& result);
   void find_eigenvalues(const Blocks& blocks, std::vector<std::complex<double>>& values);
   void leave_out_absent(const DefiningSystem& defining, std::vector<std::complex<double>>& values) const;
   void leave_out_undetermined(FloquetMultipliers& result);
+  using Distance = double (*)(const std::complex<double>&, const std::complex<double>&);
+  double keep_known(Distance distance, double most, FloquetMultipliers& result);
   void form_products(bool touches, FloquetMultipliers& result);
 
   OrbitShape shape_;
   std::vector<SegmentEnd> ends_;
-  Blocks blocks_;                // E_s, A'_s
-  std::vector<double> a_sizes_;  // of the blocks before their projection
+  Blocks blocks_;                             // E_s, A'_s
+  Blocks tilted_;                             // the same with the other direction
+  std::vector<std::complex<double>> others_;  // multipliers to compare with
+  std::vector<double> a_sizes_;               // of the blocks before their projection
   std::vector<double> e_sizes_;
   PeriodicQz qz_;
   CyclicDeterminant determinant_;

@@ -53,6 +53,15 @@ std::vector<Complex> by_excess(const FloquetMultipliers& multipliers) {
 
 }  // namespace
 
+Stability FloquetMultipliers::stability() const {
+  if (!valid) return Stability::unknown;
+  const double doubt = doubt_of_stability(*this);
+  const bool is_doubtful = !are_eigenvalues && doubt > stability_margin;
+  const UnstableCount count = count_unstable(*this);
+  if (is_doubtful ? count.outside > 0 : !stable()) return Stability::unstable;
+  return undetermined > 0 || (is_doubtful && count.undecided > 0) ? Stability::unknown : Stability::stable;
+}
+
 double largest_modulus(std::span<const Complex> values) {
   double largest = 0.0;
   for (const Complex& value : values) largest = std::max(largest, std::abs(value));
@@ -64,7 +73,8 @@ double stability_excess(const FloquetMultipliers& multipliers, const Complex& mu
 }
 
 double multiplier_accuracy(const FloquetMultipliers& multipliers) {
-  return std::max(orbit_accuracy, multipliers.are_eigenvalues ? 0.0 : multipliers.structural);
+  if (multipliers.are_eigenvalues) return orbit_accuracy;
+  return std::max({orbit_accuracy, multipliers.structural, multipliers.uncertainty});
 }
 
 double multiplier_distance(const FloquetMultipliers& multipliers, double target) {
@@ -73,16 +83,19 @@ double multiplier_distance(const FloquetMultipliers& multipliers, double target)
   return nearest;
 }
 
-int touching_segment(const TestedPoint& point) {
+int touching_segment(std::span<const double> transversalities) {
   constexpr double tangent = 1e-4;
-  for (std::size_t s = 0; s < point.transversalities.size(); ++s)
-    if (std::abs(point.transversalities[s]) < tangent) return static_cast<int>(s);
+  for (std::size_t s = 0; s < transversalities.size(); ++s)
+    if (std::abs(transversalities[s]) < tangent) return static_cast<int>(s);
   return -1;
 }
 
 std::string objection_without_multiplier(const TestedPoint& point, int target, const std::string& what) {
   const FloquetMultipliers& multipliers = point.multipliers;
-  if (!point.one_parameter_family || multipliers.are_eigenvalues || !multipliers.determined()) return "";
+  if (!point.one_parameter_family || multipliers.are_eigenvalues) return "";
+  if (multipliers.is_flow_lost)
+    return what + ", but the multipliers are not known (errors grow too much along the orbit): no label";
+  if (!multipliers.determined()) return "";
   if (touching_segment(point) >= 0) return "";
   const double distance = multiplier_distance(multipliers, target);
   if (multipliers.structural > structural_bound)
@@ -221,9 +234,11 @@ LocatedZero locate_zero_surely(const Function& function, const SignChange& step,
     zero.bracket.low += low;
     zero.bracket.high += low;
     bracket = zero.bracket;
-    // A jump may look smooth on a part of the step, where it is all there is.
+    // Only the whole step tells: on a part of it a jump may be all there is and look smooth, and what Newton's method
+    // leaves of its tolerance may look like a jump.
+    const bool ended = zero.converged() || zero.status == ZeroSearch::jump;
     const bool nothing = std::abs(zero.value) <= rounding_level;
-    if (zero.converged() && !nothing && is_jump(step, bracket, tolerance)) zero.status = ZeroSearch::jump;
+    if (ended && !nothing) zero.status = is_jump(step, bracket, tolerance) ? ZeroSearch::jump : ZeroSearch::located;
     if (zero.converged() || zero.status == ZeroSearch::jump || !halve(bracket, function)) break;
   }
   return zero;

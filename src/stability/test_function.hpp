@@ -30,6 +30,8 @@ struct MultiplierProduct {
   double uncertainty = 0.0;
 };
 
+enum class Stability { stable, unstable, unknown };
+
 struct FloquetMultipliers {
   /// n multipliers, the structural zero among them: the one closest to 1 first, then by | |mu| - 1 |. Of an orbit
   /// without a section the trivial one stands before these, in place of the zero.
@@ -44,6 +46,11 @@ struct FloquetMultipliers {
   /// Nontrivial multipliers that are left out of `values`: where h_x f = 0 they may be 0/0, and what comes out is
   /// noise.
   int undetermined = 0;
+  /// So it may be where the orbit passes so near to an equilibrium that errors on the way there are all of the flow
+  /// behind it: `undetermined` are left out for that, and `structural` says nothing of the mesh.
+  bool is_flow_lost = false;
+  /// Of the others, relative to those beyond the unit circle, where it is more than the accuracy of orbits.
+  double uncertainty = 0.0;
   MultiplierProduct with_one = {};        ///< t = 1: vanishes with a multiplier +1
   MultiplierProduct with_minus_one = {};  ///< t = -1: vanishes with a multiplier -1
 
@@ -57,6 +64,8 @@ struct FloquetMultipliers {
 
   /// All |mu| <= 1 + 1e-5 of those that are known; of eigenvalues all real parts <= 0 but for rounding.
   bool stable() const;
+  /// stable() where all are known, and none so near to the unit circle that its uncertainty decides.
+  Stability stability() const;
   int stable_count() const;
 };
 
@@ -187,7 +196,8 @@ double stability_excess(const FloquetMultipliers& multipliers, const std::comple
 inline constexpr double structural_bound = 5e-2;
 
 /// The first segment (from 0) whose end is tangent to its event surface, |h_x f| < 1e-4 |h_x| |f|; -1: none.
-int touching_segment(const TestedPoint& point);
+int touching_segment(std::span<const double> transversalities);
+inline int touching_segment(const TestedPoint& point) { return touching_segment(point.transversalities); }
 
 /// Why a located zero of the function of folds or branch points (`target` 1) or of period doublings (-1) is no such
 /// point, "" where it may be one. `what` changes there, for the text. Decides nothing where multipliers are not
