@@ -35,10 +35,11 @@ std::vector<std::size_t> number_columns(const PointSection& section, const Curve
   return result;
 }
 
-/// A Hopf bifurcation of periodic orbits is where they have shrunk.
+/// A Hopf bifurcation of periodic orbits, a generalised one of folds, is where they have shrunk.
 bool has_shrunk(const PointSection& section, const PointRow& row) {
-  return family_of(section.problem_type).facts().headings.has_period &&
-         basic_type(row.type) == static_cast<int>(PointType::hopf);
+  const bool is_birth = basic_type(row.type) == static_cast<int>(PointType::hopf) ||
+                        label_type(row.type) == static_cast<int>(PointType::generalized_hopf);
+  return is_birth && family_of(section.problem_type).facts().headings.has_period;
 }
 
 /// The equilibrium in an orbit that has shrunk, which the means give.
@@ -205,6 +206,13 @@ double CurveCommands::largest_step() const {
   return std::sqrt((first.to - first.from) * (second_.to - second_.from)) / 20.0;
 }
 
+/// That go once across the rectangle and back, with such steps.
+int CurveCommands::most_points() const {
+  const SweptRange& first = commands_.range();
+  const double ratio = (first.to - first.from) / (second_.to - second_.from);
+  return static_cast<int>(std::clamp(60.0 * std::sqrt(std::max(ratio, 1.0 / ratio)), 400.0, 20000.0));
+}
+
 CommandJob CurveCommands::curve(const std::string& name, const std::string& command, const std::string& source,
                                 bool rests) const {
   CommandJob job{name, {}, {commands_.file('q', source), commands_.file('r', source)}, commands_.files_of(name)};
@@ -220,7 +228,7 @@ CommandJob CurveCommands::curve(const std::string& name, const std::string& comm
                                  fmt::format("BOUNDS={{{}: [{}, {}]}}", second_.parameter, second_.from, second_.to),
                                  fmt::format("DS={:g}", largest_step() / 10.0),
                                  fmt::format("DSMAX={:g}", largest_step()),
-                                 "NMX=400"};
+                                 fmt::format("NMX={}", most_points())};
   std::vector<int> returns(static_cast<std::size_t>(returns_));
   std::iota(returns.begin(), returns.end(), 1);
   if (command.starts_with("tchat resegment")) words.push_back(fmt::format("GCIPSI=[{}]", fmt::join(returns, ",")));

@@ -93,6 +93,7 @@ class CurveCommands {
  private:
   std::string free_parameters(bool rests) const;
   double largest_step() const;
+  int most_points() const;
 
   const ExplorationCommands& commands_;
   int returns_;
