@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "continuation/branch_limits.hpp"
+#include "continuation/orbit_limit.hpp"
 #include "orbit/defining_system.hpp"
 #include "orbit/mesh_adaptation.hpp"
 #include "orbit/orbit.hpp"
@@ -270,7 +271,12 @@ SpecialPoint ContinuationRun::shrunk_orbit(SpecialPoint special, bool through_po
   const bool turns =
       through_point || special.type == PointType::fold || special.kind.kind == UserPointKind::impact_velocity;
   if (!trend_.has_shrunk(next_.point.orbit, turns ? shrunk_where_located : shrunk)) return special;
-  special = analysis_->shrunk(next_.point.orbit);
+  const OrbitCondition* condition = follower_.condition();
+  const bool are_folds = condition != nullptr && condition->kept_multiplier() == 1;
+  if (std::optional<PathPoint> smallest = smallest_orbit(follower_, system_, here_, trend_))
+    next_.point = *std::move(smallest);
+  next_.data = search_.evaluate_again(next_.point);
+  special = analysis_->shrunk(next_.point.orbit, are_folds);
   end(EndReason::equilibrium, special.description);
   return special;
 }

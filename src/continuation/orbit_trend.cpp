@@ -112,6 +112,13 @@ Eigen::VectorXd state_ranges(const Orbit& x) {
                                       [&](Eigen::Index k) { return deviation_range(x, static_cast<int>(k), 1); });
 }
 
+bool is_smooth(const DefiningSystem& system) {
+  const Signature& signature = system.signature();
+  return std::all_of(signature.begin(), signature.end(), [&](const IndexVector& index) {
+    return index.field == signature.front().field && is_identity_jump(system.system(), index);
+  });
+}
+
 double deviation_cosine(const Orbit& x, const Orbit& y, int orbits) {
   const Products sums = products_of_deviations(x.states, y.states, orbits);
   const double sizes = std::sqrt(sums.x) * std::sqrt(sums.y);
@@ -152,14 +159,17 @@ void OrbitTrend::add(const Orbit& x, double parameter) {
   last_ = {parameter, x.period()};
 }
 
+double OrbitTrend::amplitude(const Orbit& x) const {
+  double largest = 0.0;
+  for (int k = 0; k < largest_.size(); ++k)
+    if (largest_(k) > rounding * (1.0 + sizes_(k)))
+      largest = std::max(largest, deviation_range(x, k, orbits_) / largest_(k));
+  return largest;
+}
+
 bool OrbitTrend::has_shrunk(const Orbit& x, double share) const {
-  bool moves = false;
-  for (int k = 0; k < largest_.size(); ++k) {
-    if (largest_(k) <= rounding * (1.0 + sizes_(k))) continue;
-    moves = true;
-    if (deviation_range(x, k, orbits_) > share * largest_(k)) return false;
-  }
-  return moves;
+  const bool moves = (largest_.array() > rounding * (1.0 + sizes_.array())).any();
+  return moves && amplitude(x) <= share;
 }
 
 std::optional<PeriodGrowth> OrbitTrend::period_growth() const {
@@ -258,7 +268,7 @@ std::string homoclinic_limit(const DefiningSystem& system, const Orbit& x, const
                                        : "towards an orbit that does not leave this equilibrium, which is no saddle");
 }
 
-SpecialPoint BranchAnalysis::shrunk(const Orbit&) const { return {}; }
+SpecialPoint BranchAnalysis::shrunk(const Orbit&, bool) const { return {}; }
 
 std::string BranchAnalysis::start_advice(const Orbit&) const {
   return "The largest ones say which part of the start, of the parameters or of the signature is wrong; a better "

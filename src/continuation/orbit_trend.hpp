@@ -19,6 +19,9 @@ namespace tchat {
 /// Largest minus least value of each state over the orbit, n entries.
 Eigen::VectorXd state_ranges(const Orbit& x);
 
+/// Are there but events that cut the orbits of one field, so that they may shrink to an equilibrium of it?
+bool is_smooth(const DefiningSystem& system);
+
 /// Cosine of the angle between the states' deviations from their means, nodes being equal; both orbits on one mesh.
 /// About -1 where a step has led through an equilibrium: beyond it the branch consists of the same orbits, begun half a
 /// turn later.
@@ -43,6 +46,9 @@ class OrbitTrend {
 
   /// Is every state's range of deviations at most this share of its largest one so far?
   bool has_shrunk(const Orbit& x, double share) const;
+
+  /// The largest range of the deviations of a state, as a share of its largest one so far; 0 where none has moved.
+  double amplitude(const Orbit& x) const;
 
   /// Nothing unless the period is positive and has grown by more than half since the parameter stands still.
   std::optional<PeriodGrowth> period_growth() const;
@@ -87,8 +93,8 @@ class BranchAnalysis {
   virtual bool has_fixed_phase() const { return true; }
   /// May the solutions shrink to a point along a branch, which ends there?
   virtual bool may_shrink() const { return false; }
-  /// The special point at which a branch ends because x has shrunk, with a description.
-  virtual SpecialPoint shrunk(const Orbit& x) const;
+  /// The special point at which a branch, or a curve of folds, ends because x has shrunk, with a description.
+  virtual SpecialPoint shrunk(const Orbit& x, bool are_folds) const;
   /// Why no solution lies beyond the step of signed length ds between two points, or at its end; "" where one may.
   virtual std::string passed_infinity(const PathPoint& /*from*/, const PathPoint& /*to*/, double /*ds*/) const {
     return "";

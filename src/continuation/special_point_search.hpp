@@ -43,6 +43,7 @@ class SpecialPointSearch {
   PointData begin(PathPoint& start);
 
   /// At a converged point, whose linearisation the follower holds.
+  PointData evaluate_again(PathPoint& at);  ///< with a new linearisation
   PointData evaluate(PathPoint& at);
   /// Overwrites the data of another point, whose space is used again.
   void evaluate(PathPoint& at, PointData& data);
@@ -92,7 +93,6 @@ class SpecialPointSearch {
   double signed_distance(const PathPoint& at) const;
   void find_event_courses(const Orbit& x, PointData& data);
   bool is_near_zero(std::size_t test, const TestValue& end) const;
-  PointData evaluate_again(PathPoint& at);  // with a new linearisation
   std::vector<std::size_t> changed(const PointData& end) const;
   std::optional<Candidate> farther_step(const PathPoint& here, Candidate& next);
   std::optional<SpecialPoint> advance_to_first_zero(const PathPoint& from, Candidate& next, NewtonResult& newton,

@@ -9,6 +9,7 @@
 #include "base/messages.hpp"
 #include "continuation/branch_limits.hpp"
 #include "continuation/orbit_trend.hpp"
+#include "continuation/solution_measure.hpp"
 #include "files/orbit_trace.hpp"
 #include "kinds/orbit_check.hpp"
 #include "model/events.hpp"
@@ -72,11 +73,7 @@ constexpr double no_range = 1e-7;
 /// the period is that of the linear oscillation.
 std::optional<double> hopf_frequency(const DefiningSystem& system, const Orbit& x) {
   constexpr double accuracy = 1e-2;
-  const Signature& signature = system.signature();
-  const bool smooth = std::all_of(signature.begin(), signature.end(), [&](const IndexVector& index) {
-    return index.field == signature.front().field && is_identity_jump(system.system(), index);
-  });
-  if (!smooth) return std::nullopt;
+  if (!is_smooth(system)) return std::nullopt;
   const FloquetMultipliers eigenvalues = equilibrium_eigenvalues(system, x);
   const EigenvaluePair pair = hopf_pairs(eigenvalues.values).nearest;
   const double omega = std::abs(pair.first.imag());
@@ -94,15 +91,24 @@ bool RingAnalysis::has_fixed_phase() const {
                       [](const IndexVector& index) { return index.event == no_function; });
 }
 
-SpecialPoint RingAnalysis::shrunk(const Orbit& x) const {
+SpecialPoint RingAnalysis::shrunk(const Orbit& x, bool are_folds) const {
   const std::optional<double> omega = hopf_frequency(system_, x);
   const bool is_family = system_.conserved_quantities() > 0;  // at an equilibrium that need not change its stability
-  const std::string what = is_family ? "linear oscillation" : "Hopf bifurcation";
-  return {omega && !is_family ? PointType::hopf : PointType::end,
+  const char* what = is_family ? "linear oscillation" : are_folds ? "generalised Hopf point" : "Hopf bifurcation";
+  const PointType type = !omega || is_family ? PointType::end
+                         : are_folds         ? PointType::generalized_hopf
+                                             : PointType::hopf;
+  const int n = x.shape.dimension;
+  const CollocationRule rule(x.shape.collocation);
+  const Eigen::VectorXd means = Eigen::VectorXd::NullaryExpr(n, [&](Eigen::Index i) {
+    return solution_measure(x, rule, Eigen::VectorXd::Ones(n), n + 1 + static_cast<int>(i));
+  });
+  return {type,
           {},
           false,
-          fmt::format("the orbit has shrunk to a point, {}: an equilibrium, where the branch of periodic orbits ends{}",
-                      state_text(system_.system(), x, x.start(0)),
+          fmt::format("the orbit has shrunk to a point, {}: an equilibrium, where the {} ends{}",
+                      state_text(system_.system(), x, means.data()),
+                      are_folds ? "curve of folds" : "branch of periodic orbits",
                       omega ? fmt::format(" ({}, omega = {:.6g})", what, *omega) : "")};
 }
 

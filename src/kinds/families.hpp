@@ -79,7 +79,7 @@ class RingAnalysis : public BranchAnalysis {
   bool has_fixed_phase() const override;
   bool may_shrink() const override { return true; }
   /// To an equilibrium; a Hopf bifurcation where the flow is smooth there and the period that of its oscillation.
-  SpecialPoint shrunk(const Orbit& x) const override;
+  SpecialPoint shrunk(const Orbit& x, bool are_folds) const override;
   std::string passed_infinity(const PathPoint& from, const PathPoint& to, double ds) const override;
   std::string passed_zero(const Orbit& from, const Orbit& to) const override;
   std::string passed_zero_segment(const Orbit& from, const Orbit& to) const override;

@@ -143,7 +143,7 @@ class TorusAnalysis final : public RingAnalysis {
   void find_multipliers(const CondensedSystem& condensed, const Orbit& x, FloquetMultipliers& result) override {
     result = torus_multipliers(system_, condensed, x);
   }
-  SpecialPoint shrunk(const Orbit& x) const override {
+  SpecialPoint shrunk(const Orbit& x, bool) const override {
     return {PointType::torus,
             {},
             false,

@@ -42,10 +42,20 @@ Eigen::VectorXd parameter_sizes(const RunSettings& settings, const SelectedStart
   return sizes;
 }
 
+/// Orbits at the end of a branch that ends at a Hopf bifurcation are as small as can be: that says nothing of others.
+bool has_shrunk(const SelectedStart& start) {
+  const auto is_birth = [](int type) {
+    return type == static_cast<int>(PointType::hopf) || type == static_cast<int>(PointType::generalized_hopf);
+  };
+  return start.from_solution && start.start.orbit.shape.stored_nodes() > 1 &&
+         std::any_of(start.types.begin(), start.types.end(), is_birth);
+}
+
 }  // namespace
 
 OwnUnits in_own_units(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start) {
-  const Eigen::VectorXd sizes = state_sizes(system, settings.signature(), start.start.orbit);
+  const Eigen::VectorXd sizes = has_shrunk(start) ? Eigen::VectorXd::Ones(system.dimension())
+                                                  : state_sizes(system, settings.signature(), start.start.orbit);
   const Eigen::VectorXd units = units_of(sizes);
   OwnUnits own{
       std::make_unique<ScaledProblem>(system, Scales{units, parameter_sizes(settings, start)}), start, settings, {}};

@@ -307,7 +307,7 @@ TEST_CASE("equilibria and cycles: cusp, zero-Hopf, generalised Hopf and boundary
   CHECK(std::hypot(cusp.first, cusp.second) <= 1e-8);
   check_meeting(tree, {-2.0, 3.0}, {{folds, "ZH"}, {hopf, "ZH"}}, 1e-8);
   check_meeting(tree, {2.0, 3.0}, {{folds, "BE"}, {boundary, "LP"}}, 1e-8);
-  check_meeting(tree, {0.0, 1.0}, {{hopf, "GH"}, {cycles, "HB"}}, 1e-7);
+  check_meeting(tree, {0.0, 1.0}, {{hopf, "GH"}, {cycles, "GH"}}, 1e-8);
 }
 
 TEST_CASE("a map: folds of doubled orbits begin at generalised period doubling") {

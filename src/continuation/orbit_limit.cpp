@@ -1,0 +1,78 @@
+#include "continuation/orbit_limit.hpp"
+
+#include <array>
+#include <cmath>
+#include <span>
+
+namespace tchat {
+
+namespace {
+
+/// The point with this amplitude near `from`.
+std::optional<PathPoint> with_amplitude(PathFollower& follower, const PathPoint& from, const OrbitTrend& trend,
+                                        double wanted) {
+  constexpr double as_expected = 0.5;  // relatively: the tangent knows amplitudes to their square
+  constexpr double alike = 0.8;        // cosine: the same orbit, not begun half a turn later
+  const double growth = deviation_growth(from.orbit, from.tangent.states);
+  const double ds = (wanted / trend.amplitude(from.orbit) - 1.0) / growth;
+  PathPoint found = from;
+  if (!std::isfinite(ds) || !follower.step(from, ds, found).converged()) return std::nullopt;
+  if (!(std::abs(trend.amplitude(found.orbit) - wanted) <= as_expected * wanted)) return std::nullopt;
+  if (deviation_cosine(from.orbit, found.orbit) < alike) return std::nullopt;
+  return found;
+}
+
+/// PAR(k) at the amplitude 0, by the polynomial in a^2 through three orbits. Nothing where it does not converge.
+std::optional<double> limit_of_parameter(std::span<const Orbit> orbits, std::span<const double> amplitudes, int k) {
+  constexpr double converges = 0.1;  // what the third orbit adds, as a share of what the parameter changes at all
+  const auto value = [&](std::size_t i) { return orbits[i].par(k - 1); };
+  const auto between = [&](std::size_t i, std::size_t j, double a, double b) {
+    const double x = std::pow(amplitudes[i], 2), y = std::pow(amplitudes[j], 2);
+    return (x * b - y * a) / (x - y);
+  };
+  const double of_larger = between(0, 1, value(0), value(1));
+  const double of_smaller = between(1, 2, value(1), value(2));
+  const double limit = between(0, 2, of_larger, of_smaller);
+  const bool is_certain =
+      std::abs(limit - of_smaller) <= converges * std::abs(limit - value(0)) + orbit_accuracy * std::abs(limit);
+  return is_certain ? std::optional(limit) : std::nullopt;
+}
+
+void put_limits(PathFollower& follower, const DefiningSystem& system, const PathPoint& from, const OrbitTrend& trend,
+                Orbit& x) {
+  constexpr std::array shares = {0.02, 0.014, 0.008};
+  std::vector<Orbit> orbits;
+  std::vector<double> amplitudes;
+  for (const double share : shares) {
+    const std::optional<PathPoint> point = with_amplitude(follower, from, trend, share);
+    if (!point) return;
+    orbits.push_back(point->orbit);
+    amplitudes.push_back(trend.amplitude(point->orbit));
+  }
+  for (const int k : system.free_parameters())
+    if (const std::optional<double> limit = limit_of_parameter(orbits, amplitudes, k)) x.par(k - 1) = *limit;
+}
+
+}  // namespace
+
+std::optional<PathPoint> smallest_orbit(PathFollower& follower, const DefiningSystem& system, const PathPoint& from,
+                                        const OrbitTrend& trend) {
+  const OrbitCondition* condition = follower.condition();
+  const bool are_folds = condition != nullptr && condition->kept_multiplier() == 1;
+  const bool is_branch = condition == nullptr && system.free_count() == 1 && follower.held().empty();
+  if (system.orbits() > 1 || !is_smooth(system) || !(is_branch || are_folds)) return std::nullopt;
+  const double least = are_folds ? 1e-3 : 1e-5;
+  PathPoint here = from;
+  double reached = 1.0;
+  for (double wanted = 1e-2; wanted > 0.5 * least; wanted *= 0.1) {
+    std::optional<PathPoint> next = with_amplitude(follower, here, trend, wanted);
+    if (!next) break;
+    here = *std::move(next);
+    reached = wanted;
+  }
+  if (reached > 2e-3) return std::nullopt;
+  if (are_folds) put_limits(follower, system, from, trend, here.orbit);
+  return here;
+}
+
+}  // namespace tchat
