@@ -259,7 +259,8 @@ const char* word_for(Defect defect) {
 
 /// What is seen of one label.
 struct Verdict {
-  bool is_right = true;
+  bool is_right = true;          // but for segments that say nothing
+  bool is_undecided = false;     // there are such
   bool is_inadmissible = false;  // as stored
 };
 
@@ -376,7 +377,9 @@ class Table {
       const bool excused = is_inadmissible && std::erase(defects, Defect::event) > 0;
       if (s == 0 && are_multipliers_wrong(check, tolerance_)) defects.push_back(Defect::multipliers);
       if (s == 0 && are_critical_ones_wrong(check, tolerance_)) defects.push_back(Defect::critical);
-      verdict.is_right = verdict.is_right && defects.empty();
+      const bool is_undecided = defects == std::vector{Defect::undecided};
+      verdict.is_right = verdict.is_right && (defects.empty() || is_undecided);
+      verdict.is_undecided = verdict.is_undecided || is_undecided;
       verdict.is_inadmissible = verdict.is_inadmissible || excused;
       std::vector<const char*> words;
       for (const Defect defect : defects) words.push_back(word_for(defect));
@@ -414,17 +417,34 @@ class Table {
 /// Labels in a summary.
 constexpr std::size_t most_named = 20;
 
-std::string summary(const std::string& path, const std::vector<int>& wrong, std::size_t labels, int inadmissible,
-                    double tolerance) {
+/// "1, 4, 7", as many as are named.
+std::string list_of(const std::vector<int>& labels) {
+  const std::size_t named = std::min(labels.size(), most_named);
+  return fmt::format("{}{}", fmt::join(labels.begin(), labels.begin() + static_cast<std::ptrdiff_t>(named), ", "),
+                     labels.size() > named ? ", ..." : "");
+}
+
+/// Labels by their verdict.
+struct Verdicts {
+  std::vector<int> wrong, undecided;
+  std::size_t all = 0;
+  int inadmissible = 0;
+};
+
+std::string summary(const std::string& path, const Verdicts& of, double tolerance) {
   const std::string stored =
-      inadmissible > 0 ? fmt::format(" ({} inadmissible, as the run had found)", inadmissible) : "";
-  if (wrong.empty())
-    return fmt::format("{}: {} label{} agree{} with forward integration to {:g}{}.\n", path, labels,
-                       labels == 1 ? "" : "s", labels == 1 ? "s" : "", tolerance, stored);
-  const std::size_t named = std::min(wrong.size(), most_named);
-  return fmt::format("{}: {} of {} labels beyond the tolerance {:g}{}: {}{}\n", path, wrong.size(), labels, tolerance,
-                     stored, fmt::join(wrong.begin(), wrong.begin() + static_cast<std::ptrdiff_t>(named), ", "),
-                     wrong.size() > named ? ", ..." : "");
+      of.inadmissible > 0 ? fmt::format(" ({} inadmissible, as the run had found)", of.inadmissible) : "";
+  const std::string open = of.undecided.empty()
+                               ? ""
+                               : fmt::format("{} of {} labels undecided, as errors grow too much along them: {}",
+                                             of.undecided.size(), of.all, list_of(of.undecided));
+  if (!of.wrong.empty())
+    return fmt::format("{}: {} of {} labels beyond the tolerance {:g}{}: {}{}{}\n", path, of.wrong.size(), of.all,
+                       tolerance, stored, list_of(of.wrong), open.empty() ? "" : "; ", open);
+  const std::size_t right = of.all - of.undecided.size();
+  if (right == 0) return fmt::format("{}: {}.\n", path, open);
+  return fmt::format("{}: {} label{} agree{} with forward integration to {:g}{}{}{}.\n", path, right,
+                     right == 1 ? "" : "s", right == 1 ? "s" : "", tolerance, stored, open.empty() ? "" : "; ", open);
 }
 
 }  // namespace
@@ -457,16 +477,18 @@ bool verify_solutions(const VerifyRequest& request, std::ostream& screen, std::o
     warnings << fmt::format("tchat: warning: there is no {}: multipliers are compared with nothing\n",
                             diagnostics.empty() ? "d-file" : diagnostics);
   Table table(system, settings, request.tolerance, screen);
-  std::vector<int> wrong;
-  int inadmissible = 0;
+  Verdicts verdicts{{}, {}, solutions.size(), 0};
   for (const LabelledSolution& solution : solutions) {
     const auto found = recorded.find(solution.label);
     const Verdict verdict = table.add(solution, found != recorded.end() ? &found->second : nullptr);
-    if (!verdict.is_right) wrong.push_back(solution.label);
-    inadmissible += verdict.is_inadmissible ? 1 : 0;
+    if (!verdict.is_right)
+      verdicts.wrong.push_back(solution.label);
+    else if (verdict.is_undecided)
+      verdicts.undecided.push_back(solution.label);
+    verdicts.inadmissible += verdict.is_inadmissible ? 1 : 0;
   }
-  screen << table.worst() << summary(path, wrong, solutions.size(), inadmissible, request.tolerance);
-  return wrong.empty();
+  screen << table.worst() << summary(path, verdicts, request.tolerance);
+  return verdicts.wrong.empty() && verdicts.undecided.empty();
 }
 
 }  // namespace tchat
