@@ -58,13 +58,15 @@ void put_limits(PathFollower& follower, const DefiningSystem& system, const Path
 std::optional<PathPoint> smallest_orbit(PathFollower& follower, const DefiningSystem& system, const PathPoint& from,
                                         const OrbitTrend& trend) {
   const OrbitCondition* condition = follower.condition();
-  const bool are_folds = condition != nullptr && condition->kept_multiplier() == 1;
+  const bool are_folds = condition != nullptr && condition->count() == 1 && condition->kept_multiplier() == 1;
   const bool is_branch = condition == nullptr && system.free_count() == 1 && follower.held().empty();
   if (system.orbits() > 1 || !is_smooth(system) || !(is_branch || are_folds)) return std::nullopt;
-  const double least = are_folds ? 1e-3 : 1e-5;
+  constexpr std::array of_folds = {1e-2, 2e-3, 5e-4};
+  constexpr std::array of_branch = {1e-2, 1e-3, 1e-4, 1e-5};
+  const std::span<const double> shares = are_folds ? std::span<const double>(of_folds) : of_branch;
   PathPoint here = from;
   double reached = 1.0;
-  for (double wanted = 1e-2; wanted > 0.5 * least; wanted *= 0.1) {
+  for (const double wanted : shares) {
     std::optional<PathPoint> next = with_amplitude(follower, here, trend, wanted);
     if (!next) break;
     here = *std::move(next);

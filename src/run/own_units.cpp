@@ -51,11 +51,19 @@ bool has_shrunk(const SelectedStart& start) {
          std::any_of(start.types.begin(), start.types.end(), is_birth);
 }
 
+/// Of states that are zero but for that.
+void forget_amplitudes(const Orbit& x, Eigen::VectorXd& sizes) {
+  for (Eigen::Index k = 0; k < sizes.size(); ++k) {
+    const auto values = x.states.row(k);
+    if (values.maxCoeff() - values.minCoeff() > 0.5 * values.cwiseAbs().maxCoeff()) sizes(k) = 1.0;
+  }
+}
+
 }  // namespace
 
 OwnUnits in_own_units(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start) {
-  const Eigen::VectorXd sizes = has_shrunk(start) ? Eigen::VectorXd::Ones(system.dimension())
-                                                  : state_sizes(system, settings.signature(), start.start.orbit);
+  Eigen::VectorXd sizes = state_sizes(system, settings.signature(), start.start.orbit);
+  if (has_shrunk(start)) forget_amplitudes(start.start.orbit, sizes);
   const Eigen::VectorXd units = units_of(sizes);
   OwnUnits own{
       std::make_unique<ScaledProblem>(system, Scales{units, parameter_sizes(settings, start)}), start, settings, {}};
