@@ -33,7 +33,10 @@ std::optional<UnlabelledChange> StabilityWatch::add(const Point& point, bool is_
     known_.reset();
     return std::nullopt;
   }
-  if (!point.multipliers.determined()) return std::nullopt;
+  if (!point.multipliers.determined()) {
+    if (is_reported) known_.reset();
+    return std::nullopt;
+  }
   if (is_reported || !known_) {
     remember(point);
     return std::nullopt;

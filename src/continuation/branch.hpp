@@ -123,6 +123,7 @@ struct BranchSummary {
   bool critical_curve = false;          ///< every point has a critical multiplier, so stability says nothing
   bool without_contact = false;         ///< stability is that of the orbit without the contact that the curve keeps
   double worst_structural = 0.0;        ///< largest structural multiplier, or distance of the trivial one from 1
+  bool has_structural = false;          ///< is it known at any point?
   bool has_trivial = false;             ///< orbits without a section have this one instead
   double worst_estimated_error = 0.0;
   std::optional<double> worst_unfolding = {};  ///< largest lambda of orbits that conserve a function

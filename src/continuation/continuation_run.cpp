@@ -55,11 +55,13 @@ std::vector<std::unique_ptr<TestFunction>> with_bounds(std::vector<std::unique_p
   return tests;
 }
 
-/// Do the multipliers alone show a fold? In a canard explosion the parameter hardly moves.
-bool has_multiplier_one(const PointData& data) {
-  constexpr double accurate = 1e-3, near = 1e-2;
+/// Do the multipliers alone show a fold? In a canard explosion the parameter hardly moves. Near a Hopf bifurcation one
+/// is near 1 on all orbits.
+bool comes_to_multiplier_one(const PointData& before, const PointData& data) {
+  constexpr double accurate = 1e-3, near = 1e-2, away = 1e-4;
   const FloquetMultipliers& multipliers = data.multipliers;
-  return multipliers.determined() && !multipliers.are_eigenvalues && multiplier_accuracy(multipliers) <= accurate &&
+  return multiplier_distance(before.multipliers, 1.0) > away && multipliers.determined() &&
+         !multipliers.are_eigenvalues && multiplier_accuracy(multipliers) <= accurate &&
          multiplier_distance(multipliers, 1.0) <= near;
 }
 
@@ -217,7 +219,8 @@ SpecialPoint ContinuationRun::advance() {
   }
   const double level = insignificant_turn * steepest_;
   const double earlier = std::exchange(before_, before);
-  const bool is_visible = turn > level || std::max(before, earlier) > sudden * level || has_multiplier_one(next_.data);
+  const bool is_visible =
+      turn > level || std::max(before, earlier) > sudden * level || comes_to_multiplier_one(accepted_data_, next_.data);
   if (is_fold(special.type) && !(is_visible && turns_visibly(parameter_at(next_.point)))) {
     reports.note(fmt::format("ICP(1) turns by rounding only (its share of the tangent is {:.1e}): no fold", turn));
     return {};
@@ -272,7 +275,7 @@ SpecialPoint ContinuationRun::shrunk_orbit(SpecialPoint special, bool through_po
       through_point || special.type == PointType::fold || special.kind.kind == UserPointKind::impact_velocity;
   if (!trend_.has_shrunk(next_.point.orbit, turns ? shrunk_where_located : shrunk)) return special;
   const OrbitCondition* condition = follower_.condition();
-  const bool are_folds = condition != nullptr && condition->kept_multiplier() == 1;
+  const bool are_folds = condition != nullptr && condition->count() == 1 && condition->kept_multiplier() == 1;
   if (std::optional<PathPoint> smallest = smallest_orbit(follower_, system_, here_, trend_))
     next_.point = *std::move(smallest);
   next_.data = search_.evaluate_again(next_.point);
@@ -471,6 +474,7 @@ void ContinuationRun::record(const SpecialPoint& special, const PointData& data)
     summary_.unstable_points += stability == Stability::unstable;
     summary_.undetermined_points += stability == Stability::unknown;
   }
+  summary_.has_structural = summary_.has_structural || !data.multipliers.is_flow_lost;
   if (!data.multipliers.is_flow_lost)
     summary_.worst_structural = std::max(summary_.worst_structural, data.multipliers.structural);
   summary_.has_trivial = data.multipliers.has_trivial;

@@ -99,7 +99,8 @@ namespace {
 bool may_follow(const HybridSystem& system, const IndexVector& from, const IndexVector& to, const double* x,
                 const double* par) {
   std::array<std::int32_t, 3 * 64> listed;
-  const int count = std::min(system.successors(from, x, par, listed), 64);
+  const int count = system.successors(from, x, par, listed);
+  if (count > 64) return true;
   bool has_other_jump = false;
   for (int v = 0; v < count; ++v) {
     const IndexVector next{listed[3 * v], listed[3 * v + 1], listed[3 * v + 2]};

@@ -42,7 +42,9 @@ std::string undetermined_text(const FloquetMultipliers& multipliers) {
   return fmt::format(
       "{} not determined ({}), left out",
       multipliers.undetermined == 1 ? "one multiplier is" : fmt::format("{} multipliers are", multipliers.undetermined),
-      multipliers.is_flow_lost ? "errors grow too much along the orbit" : "0/0 where h_x f = 0");
+      multipliers.is_flow_lost     ? "errors grow too much along the orbit"
+      : multipliers.is_mesh_coarse ? "the mesh is too coarse"
+                                   : "0/0 where h_x f = 0");
 }
 
 /// What a label is, and what of it is not known.
@@ -187,7 +189,7 @@ std::string BranchWriter::place(const PointLine& line) const {
 bool BranchWriter::shown_stable(const BranchPoint& point) {
   if (section_.curve_type != 0) return false;
   const bool unknown = is_bifurcation(point.special.type) || point.multipliers.stability() == Stability::unknown;
-  if (!unknown || point.number == 1) last_stable_ = point.multipliers.stable();
+  if (!unknown || point.number == 1) last_stable_ = point.multipliers.stable() && !point.multipliers.is_flow_lost;
   return last_stable_;
 }
 
@@ -281,7 +283,7 @@ std::string accuracy(const BranchSummary& summary) {
   if (!summary.family->headings.has_mesh) return "";
   std::string text =
       fmt::format("  accuracy: relative error between mesh points <= {:.1e}", summary.worst_estimated_error);
-  if (summary.multipliers_computed)
+  if (summary.multipliers_computed && summary.has_structural)
     text +=
         fmt::format("; {}: {:.1e}",
                     summary.has_trivial ? "error of the multiplier that should be 1" : "multiplier that should be 0",

@@ -273,6 +273,7 @@ class Direction {
     after.undetermined_points += before.undetermined_points;
     after.multipliers_computed = before.multipliers_computed;
     after.has_trivial = before.has_trivial;
+    after.has_structural = before.has_structural || after.has_structural;
     after.worst_structural = std::max(before.worst_structural, after.worst_structural);
     if (before.worst_unfolding)
       after.worst_unfolding = std::max(*before.worst_unfolding, after.worst_unfolding.value_or(0.0));

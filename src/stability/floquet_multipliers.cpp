@@ -300,7 +300,13 @@ double FloquetSolver::keep_known(Distance distance, double most, FloquetMultipli
   for (const auto& mu : result.values) {
     const auto nearer = [&](const auto& a, const auto& b) { return distance(a, mu) < distance(b, mu); };
     const auto nearest = std::min_element(others_.begin(), others_.end(), nearer);
-    if (nearest == others_.end() || !(distance(*nearest, mu) <= most)) continue;
+    if (nearest == others_.end()) continue;
+    if (!(distance(*nearest, mu) <= most)) {
+      constexpr double alike = 0.3, far_outside = 2.0;  // noise is anywhere
+      const bool is_outside = std::min(std::abs(mu), std::abs(*nearest)) > far_outside;
+      result.surely_outside += is_outside && relative_distance(*nearest, mu) <= alike;
+      continue;
+    }
     largest = std::max(largest, distance(*nearest, mu));
     others_.erase(nearest);
     result.values[known++] = mu;
@@ -376,7 +382,8 @@ void FloquetSolver::compute(const CondensedSystem& condensed, const Orbit& x, Fl
   result.has_trivial = false;
   result.undetermined = 0;
   result.uncertainty = 0.0;
-  result.is_flow_lost = false;
+  result.is_flow_lost = result.is_mesh_coarse = false;
+  result.surely_outside = 0;
   result.with_one = result.with_minus_one = {};
   result.structural = std::isfinite(structural) ? std::min(structural, infinite_multiplier) : infinite_multiplier;
   find_eigenvalues(blocks_, result.values);

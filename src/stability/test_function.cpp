@@ -58,7 +58,7 @@ Stability FloquetMultipliers::stability() const {
   const double doubt = doubt_of_stability(*this);
   const bool is_doubtful = !are_eigenvalues && doubt > stability_margin;
   const UnstableCount count = count_unstable(*this);
-  if (is_doubtful ? count.outside > 0 : !stable()) return Stability::unstable;
+  if (surely_outside > 0 || (is_doubtful ? count.outside > 0 : !stable())) return Stability::unstable;
   return undetermined > 0 || (is_doubtful && count.undecided > 0) ? Stability::unknown : Stability::stable;
 }
 

@@ -49,6 +49,8 @@ struct FloquetMultipliers {
   /// So it may be where the orbit passes so near to an equilibrium that errors on the way there are all of the flow
   /// behind it: `undetermined` are left out for that, and `structural` says nothing of the mesh.
   bool is_flow_lost = false;
+  bool is_mesh_coarse = false;  ///< so it may be as well where the mesh does not resolve the orbit
+  int surely_outside = 0;       ///< of those left out: they are outside of the unit circle, wherever they are
   /// Of the others, relative to those beyond the unit circle, where it is more than the accuracy of orbits.
   double uncertainty = 0.0;
   MultiplierProduct with_one = {};        ///< t = 1: vanishes with a multiplier +1
