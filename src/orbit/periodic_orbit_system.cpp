@@ -154,11 +154,8 @@ double* ConservativeOrbitSystem::target_derivatives(int s, const Orbit& x, doubl
 std::string ConservativeOrbitSystem::why_no_solution(const Orbit& x) const {
   const std::string gap = why_not_closed(x), change = why_not_constant(x);
   if (!gap.empty() && change.empty())
-    return fmt::format(
-        "NTST = {} does not resolve this orbit: {}, though {} is conserved at its states; raise NTST, or adapt the "
-        "mesh "
-        "(IAD=1)",
-        x.shape.intervals, gap, name_);
+    return fmt::format("NTST = {} does not resolve this orbit: {}, though {} is conserved at its states; raise NTST",
+                       x.shape.intervals, gap, name_);
   const std::string& why = gap.empty() ? change : gap;
   if (why.empty()) return "";
   return fmt::format(
