@@ -51,12 +51,14 @@ bool has_shrunk(const SelectedStart& start) {
          std::any_of(start.types.begin(), start.types.end(), is_birth);
 }
 
-/// Of states that are zero but for that.
+/// Of states that are zero but for them, and of states that are smaller still.
 void forget_amplitudes(const Orbit& x, Eigen::VectorXd& sizes) {
-  for (Eigen::Index k = 0; k < sizes.size(); ++k) {
-    const auto values = x.states.row(k);
-    if (values.maxCoeff() - values.minCoeff() > 0.5 * values.cwiseAbs().maxCoeff()) sizes(k) = 1.0;
-  }
+  const auto range = [&](Eigen::Index k) { return x.states.row(k).maxCoeff() - x.states.row(k).minCoeff(); };
+  double largest = 0.0;
+  for (Eigen::Index k = 0; k < sizes.size(); ++k)
+    if (range(k) > 0.5 * x.states.row(k).cwiseAbs().maxCoeff()) largest = std::max(largest, range(k));
+  for (Eigen::Index k = 0; k < sizes.size(); ++k)
+    if (sizes(k) <= largest) sizes(k) = 1.0;
 }
 
 }  // namespace
