@@ -35,11 +35,9 @@ std::vector<std::size_t> number_columns(const PointSection& section, const Curve
   return result;
 }
 
-/// A Hopf bifurcation of periodic orbits, a generalised one of folds, is where they have shrunk.
+/// A Hopf bifurcation of periodic orbits is where they have shrunk.
 bool has_shrunk(const PointSection& section, const PointRow& row) {
-  const bool is_birth = basic_type(row.type) == static_cast<int>(PointType::hopf) ||
-                        label_type(row.type) == static_cast<int>(PointType::generalized_hopf);
-  return is_birth && family_of(section.problem_type).facts().headings.has_period;
+  return family_of(section.problem_type).facts().headings.has_period && is_birth_of_orbits(row.type);
 }
 
 /// The equilibrium in an orbit that has shrunk, which the means give.

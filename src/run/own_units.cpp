@@ -42,16 +42,12 @@ Eigen::VectorXd parameter_sizes(const RunSettings& settings, const SelectedStart
   return sizes;
 }
 
-/// Orbits at the end of a branch that ends at a Hopf bifurcation are as small as can be: that says nothing of others.
+/// The orbit at the end of a branch that ends at a Hopf bifurcation says nothing of the size of other orbits.
 bool has_shrunk(const SelectedStart& start) {
-  const auto is_birth = [](int type) {
-    return type == static_cast<int>(PointType::hopf) || type == static_cast<int>(PointType::generalized_hopf);
-  };
-  return start.from_solution && start.start.orbit.shape.stored_nodes() > 1 &&
-         std::any_of(start.types.begin(), start.types.end(), is_birth);
+  return start.from_solution && start.start.orbit.shape.stored_nodes() > 1 && is_birth_of_orbits(start.type);
 }
 
-/// Of states that are zero but for them, and of states that are smaller still.
+/// Sets to 1, not known, the sizes of states that are zero but for the amplitude of the orbit, and of smaller ones.
 void forget_amplitudes(const Orbit& x, Eigen::VectorXd& sizes) {
   const auto range = [&](Eigen::Index k) { return x.states.row(k).maxCoeff() - x.states.row(k).minCoeff(); };
   double largest = 0.0;

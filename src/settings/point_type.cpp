@@ -152,6 +152,11 @@ int label_type(int type) {
   return found != nullptr && found->is_whole ? type : basic_type(type);
 }
 
+bool is_birth_of_orbits(int type) {
+  const auto birth = static_cast<PointType>(label_type(type));
+  return birth == PointType::hopf || birth == PointType::generalized_hopf;
+}
+
 int curve_type(int type) {
   constexpr std::array of_orbits = {PointType::fold_and_torus, PointType::fold_and_doubling};
   const bool is_of_orbits =

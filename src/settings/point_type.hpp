@@ -105,6 +105,9 @@ bool is_among(const std::vector<PointType>& types, int type);
 int basic_type(int type);
 /// The same; codimension-two numbers such as 28 are returned unchanged.
 int label_type(int type);
+/// Are orbits born at such a point, so that theirs have shrunk to an equilibrium: a Hopf bifurcation, for folds of
+/// orbits a generalised one?
+bool is_birth_of_orbits(int type);
 /// The type of the points of the curve that a point with this number in files is on: its tens digit; 0: on none. AUTO's
 /// numbers for codimension two have a 2 for folds of periodic orbits.
 int curve_type(int type);
