@@ -108,6 +108,9 @@ enum class EndReason {
   first_step_failed
 };
 
+/// A larger relative error of an orbit between mesh points is one of the mesh.
+inline constexpr double coarse_mesh = 1e-3;
+
 struct BranchSummary {
   EndReason reason = EndReason::max_points;
   std::string detail;               ///< which bound, which special point, what was tried

@@ -180,8 +180,7 @@ void SpecialPointSearch::evaluate(PathPoint& at, PointData& data) {
     data.transversalities.push_back(crossing_at_end(system_, at.orbit, s).transversality());
   data.singular_distance = signed_distance(at);
   data.estimated_error = estimated_error(system_.system(), system_.signature(), at.orbit, follower_.condensed().rule());
-  constexpr double coarse = 1e-3;  // of an orbit that is so inaccurate nothing is known but that
-  if (data.multipliers.is_flow_lost && !(data.estimated_error <= coarse)) {
+  if (data.multipliers.is_flow_lost && !(data.estimated_error <= coarse_mesh)) {
     data.multipliers.is_flow_lost = false;
     data.multipliers.is_mesh_coarse = true;
   }

@@ -229,9 +229,6 @@ void BranchWriter::lost(const LostPoint& point) {
 
 namespace {
 
-/// A larger relative error is one of the mesh.
-constexpr double inaccurate = 1e-3;
-
 /// `told`: the line of the label MX says it all.
 std::string reason_text(const BranchSummary& summary, bool told) {
   switch (summary.reason) {
@@ -291,8 +288,8 @@ std::string accuracy(const BranchSummary& summary) {
   if (summary.worst_unfolding) text += fmt::format("; lambda, which should be 0: {:.1e}", *summary.worst_unfolding);
   text += "\n";
   const SummaryWords& words = summary.family->summary;
-  const std::string structural = summary.worst_structural > inaccurate ? words.structural_advice : "";
-  const std::string mesh = summary.worst_estimated_error > inaccurate ? mesh_advice : "";
+  const std::string structural = summary.worst_structural > coarse_mesh ? words.structural_advice : "";
+  const std::string mesh = summary.worst_estimated_error > coarse_mesh ? mesh_advice : "";
   return text + structural + (mesh == structural ? "" : mesh);
 }
 
@@ -355,11 +352,11 @@ std::string special_points(const std::vector<BranchWriter::Labelled>& labels, co
 
 std::string stability_counts(const BranchSummary& summary) {
   const int stable = summary.points - summary.unstable_points - summary.undetermined_points;
-  const char* but = summary.without_contact ? " but for the contact" : "";
+  const char* qualified = summary.without_contact ? " but for the contact" : "";
   if (summary.undetermined_points == 0)
-    return fmt::format(", {} stable and {} unstable{}", stable, summary.unstable_points, but);
-  return fmt::format(", {} stable, {} unstable{} and {} of unknown stability", stable, summary.unstable_points, but,
-                     summary.undetermined_points);
+    return fmt::format(", {} stable and {} unstable{}", stable, summary.unstable_points, qualified);
+  return fmt::format(", {} stable, {} unstable{} and {} of unknown stability", stable, summary.unstable_points,
+                     qualified, summary.undetermined_points);
 }
 
 }  // namespace
