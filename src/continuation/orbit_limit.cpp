@@ -22,7 +22,8 @@ std::optional<PathPoint> with_amplitude(PathFollower& follower, const PathPoint&
   return found;
 }
 
-/// PAR(k) at the amplitude 0, by the polynomial in a^2 through three orbits. Nothing where it does not converge.
+/// The limit of PAR(k) as the amplitude a goes to 0, from the polynomial in a^2 through three orbits; nothing where
+/// that does not converge.
 std::optional<double> limit_of_parameter(std::span<const Orbit> orbits, std::span<const double> amplitudes, int k) {
   constexpr double converges = 0.1;  // what the third orbit adds, as a share of what the parameter changes at all
   const auto value = [&](std::size_t i) { return orbits[i].par(k - 1); };
@@ -38,6 +39,7 @@ std::optional<double> limit_of_parameter(std::span<const Orbit> orbits, std::spa
   return is_certain ? std::optional(limit) : std::nullopt;
 }
 
+/// Gives x the free parameters of the end, all of them or none.
 void put_limits(PathFollower& follower, const DefiningSystem& system, const PathPoint& from, const OrbitTrend& trend,
                 Orbit& x) {
   constexpr std::array shares = {0.02, 0.014, 0.008};
@@ -49,8 +51,13 @@ void put_limits(PathFollower& follower, const DefiningSystem& system, const Path
     orbits.push_back(point->orbit);
     amplitudes.push_back(trend.amplitude(point->orbit));
   }
-  for (const int k : system.free_parameters())
-    if (const std::optional<double> limit = limit_of_parameter(orbits, amplitudes, k)) x.par(k - 1) = *limit;
+  std::vector<double> limits;
+  for (const int k : system.free_parameters()) {
+    const std::optional<double> limit = limit_of_parameter(orbits, amplitudes, k);
+    if (!limit) return;
+    limits.push_back(*limit);
+  }
+  for (std::size_t i = 0; i < limits.size(); ++i) x.par(system.free_parameters()[i] - 1) = limits[i];
 }
 
 }  // namespace
@@ -72,7 +79,8 @@ std::optional<PathPoint> smallest_orbit(PathFollower& follower, const DefiningSy
     here = *std::move(next);
     reached = wanted;
   }
-  if (reached > 2e-3) return std::nullopt;
+  constexpr double small_enough = 2e-3;
+  if (reached > small_enough) return std::nullopt;
   if (are_folds) put_limits(follower, system, from, trend, here.orbit);
   return here;
 }

@@ -259,7 +259,7 @@ const char* word_for(Defect defect) {
 
 /// What is seen of one label.
 struct Verdict {
-  bool is_right = true;          // but for segments that say nothing
+  bool is_right = true;          // segments that say nothing do not count
   bool is_undecided = false;     // there are such
   bool is_inadmissible = false;  // as stored
 };

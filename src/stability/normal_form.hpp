@@ -121,10 +121,10 @@ std::optional<NormalForm> normal_form(const DefiningSystem& system, const Orbit&
 std::optional<BranchingForm> orbit_branching(const DefiningSystem& system, const Orbit& x);
 
 /// c or Re d at points of a curve of period doublings or torus bifurcations, from the linearisation that Newton's
-/// method has left there and from the vectors of the curve's condition. The uncertainty is what the accuracy of the
-/// return map makes of the terms, and of solutions of (1 - A) h and (mu^2 - A) h near their poles; a coefficient which
-/// at the size of the orbit makes no more than that of a multiplier cannot be told from zero either. Allocates at the
-/// first point of a shape, and where third derivatives are differences.
+/// method has left there and from the vectors of the curve's condition. The uncertainty has two parts: the errors of
+/// the return map in each term, which are larger near the poles of (1 - A)^-1 and (mu^2 - A)^-1, and the accuracy of
+/// multipliers over the square of the largest state: a coefficient that changes multipliers by less at that amplitude
+/// counts as zero. Allocates at the first point of a shape, and where third derivatives are differences.
 class NormalFormSolver {
  public:
   explicit NormalFormSolver(const DefiningSystem& system) : system_(system) {}

@@ -234,8 +234,8 @@ LocatedZero locate_zero_surely(const Function& function, const SignChange& step,
     zero.bracket.low += low;
     zero.bracket.high += low;
     bracket = zero.bracket;
-    // Only the whole step tells: on a part of it a jump may be all there is and look smooth, and what Newton's method
-    // leaves of its tolerance may look like a jump.
+    // Whether it is a jump is judged by the change over the whole step. Within a short part of it a jump looks smooth,
+    // and the errors of Newton's method look like a jump.
     const bool ended = zero.converged() || zero.status == ZeroSearch::jump;
     const bool nothing = std::abs(zero.value) <= rounding_level;
     if (ended && !nothing) zero.status = is_jump(step, bracket, tolerance) ? ZeroSearch::jump : ZeroSearch::located;
