@@ -371,8 +371,9 @@ std::string solution_path(const std::string& s) {
   const std::string prefixed = output_path('q', s);
   if (is_file(prefixed)) return prefixed;
   if (is_file(s)) return s;
-  throw UserError(
-      fmt::format("there is no q-file {} to restart from; give the name of an earlier run's output with -s", prefixed));
+  const bool is_prefixed = fs::path(s).filename().string().starts_with("q.");
+  throw UserError(fmt::format("there is no q-file {} to restart from; give the name of an earlier run's output with -s",
+                              is_prefixed ? s : prefixed));
 }
 
 bool same_file(const std::string& a, const std::string& b) {
