@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <stdexcept>
@@ -233,14 +234,22 @@ std::vector<double> all_parameters(const LabelledSolution& solution, const Entry
   return parameters;
 }
 
+/// Polynomials on the segments' own meshes are extended a little beyond the states that are written; times that lie
+/// close together differ in their last digits only.
+bool needs_all_digits(const LabelledSolution& solution) {
+  constexpr double closest = 1e-6;
+  const std::vector<double>& tau = solution.tau;
+  return !solution.own_mesh.empty() ||
+         std::adjacent_find(tau.begin(), tau.end(), [](double a, double b) { return b - a < closest; }) != tau.end();
+}
+
 }  // namespace
 
 std::string format_solution(const LabelledSolution& solution) {
   const EntrySizes sizes = checked_sizes(solution);
   std::string text;
   append_identifier(text, solution, sizes);
-  // Polynomials on the segments' own meshes are extended a little beyond the states that are written.
-  const auto append_number = solution.own_mesh.empty() ? append_e19 : append_e26;
+  const auto append_number = needs_all_digits(solution) ? append_e26 : append_e19;
   std::vector<double> record(static_cast<std::size_t>(sizes.states) + 1);
   for (Eigen::Index point = 0; point < sizes.points; ++point) {
     record[0] = solution.tau[static_cast<std::size_t>(point)];

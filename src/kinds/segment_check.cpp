@@ -266,16 +266,46 @@ Passage integrate(const HybridSystem& system, const StoredSegment& segment, cons
           integrals.values()};
 }
 
-/// Adams' method first; what is stiff for it goes to the other one.
-Passage pass(const HybridSystem& system, const StoredSegment& segment, const VectorXd& par, const VectorXd& scale,
-             double tolerance) {
-  if (std::abs(segment.duration) < shortest_duration * std::abs(segment.period))
-    return taylor(system, segment, par, scale);
+/// The terminal event next to the end of the segment, where the flow crosses the surface.
+struct Crossing {
+  double time = 0.0;
+  VectorXd state;
+  MatrixXd flow;  // d x(time) / d x_s(0) at fixed time
+  EventAt at;
+};
+
+/// Of the duration: a crossing that lies farther from the end is another one.
+constexpr double closest = 1e-6;
+
+/// Nothing where there is none that close to the end.
+std::optional<Crossing> crossing(const HybridSystem& system, const StoredSegment& segment, const VectorXd& par,
+                                 const FlowOptions& options) {
+  CvodesFlow flow(system, segment.index.field, segment.start, par, options);
+  flow.watch({segment.index.event});
+  while (flow.advance((1.0 + closest) * segment.duration) == Progress::root) {
+    if (flow.time() < (1.0 - closest) * segment.duration) continue;
+    const VectorXd x = flow.state();
+    return Crossing{flow.time(), x, flow.jacobian(),
+                    event_at(system, segment.index.event, segment.index.field, x.data(), par.data())};
+  }
+  return std::nullopt;
+}
+
+FlowOptions options_of_check(const VectorXd& scale) {
   FlowOptions options;
   options.relative_tolerance = 1e-13;
   options.absolute_tolerance = 1e-15;
   options.sizes = scale;
   options.max_steps = 20000;
+  return options;
+}
+
+/// Adams' method first; what is stiff for it goes to the other one.
+Passage pass(const HybridSystem& system, const StoredSegment& segment, const VectorXd& par, const VectorXd& scale,
+             double tolerance) {
+  if (std::abs(segment.duration) < shortest_duration * std::abs(segment.period))
+    return taylor(system, segment, par, scale);
+  FlowOptions options = options_of_check(scale);
   Passage passage = integrate(system, segment, par, scale, options, tolerance);
   if (passage.message.empty()) return passage;
   options.method = IntegrationMethod::bdf;
@@ -283,6 +313,35 @@ Passage pass(const HybridSystem& system, const StoredSegment& segment, const Vec
   options.absolute_tolerance *= 100.0;
   options.max_steps = 1000000;
   return integrate(system, segment, par, scale, options, tolerance);
+}
+
+/// How errors grow, in the row sum norm of scaled states.
+double growth_of(const MatrixXd& flow, const VectorXd& scale) {
+  const MatrixXd scaled = scale.cwiseInverse().asDiagonal() * flow * scale.asDiagonal();
+  return std::max(1.0, scaled.cwiseAbs().rowwise().sum().maxCoeff());
+}
+
+/// Beyond this growth a stored duration has too few digits to say where the segment ends.
+constexpr double sensitive_to_time = 1e3;
+
+/// A fast motion magnifies errors of time, as at a spike. Where it comes to the event says more, if that is sure.
+void compare_at_event(const HybridSystem& system, const StoredSegment& segment, const VectorXd& par,
+                      const VectorXd& scale, double size, SegmentCheck& check) {
+  const std::optional<Crossing> met = crossing(system, segment, par, options_of_check(scale));
+  if (!met) return;
+  const double growth = growth_of(met->at.project(met->flow), scale);
+  if (!(growth < check.growth)) return;
+  check.end = met->state;
+  check.flow = met->flow;
+  check.growth = growth;
+  check.state_defect = largest(met->at.project(met->state - segment.end), scale);
+  check.time_defect = std::abs(met->time - segment.duration);
+  // Nothing of what the flow meets from there on lies on the segment.
+  const double end = met->time - closest * segment.duration;
+  std::erase_if(check.wrong, [&](const EventMet& other) {
+    return other.time > (other.event == segment.index.event ? end : met->time);
+  });
+  check.event_level = std::abs(system.event(segment.index.event, segment.end.data(), par.data())) / size;
 }
 
 }  // namespace
@@ -298,8 +357,7 @@ SegmentCheck check_segment(const HybridSystem& system, const StoredSegment& segm
   check.wrong = std::move(passage.wrong);
   check.passed = std::move(passage.passed);
   check.integrals = std::move(passage.integrals);
-  const MatrixXd scaled = scale.cwiseInverse().asDiagonal() * check.flow * scale.asDiagonal();
-  check.growth = std::max(1.0, scaled.cwiseAbs().rowwise().sum().maxCoeff());
+  check.growth = growth_of(check.flow, scale);
   check.state_defect = largest(check.end - segment.end, scale);
   if (segment.index.event == no_function) return check;
   const EventToSecondOrder at(system, segment.index.field, segment.index.event, check.end, par);
@@ -308,6 +366,8 @@ SegmentCheck check_segment(const HybridSystem& system, const StoredSegment& segm
   check.touches = !segment.grazing && at.touches(tolerance * passage.size);
   const EventToSecondOrder stored(system, segment.index.field, segment.index.event, segment.end, par);
   check.leaves_surface = !segment.grazing && stored.rate > tolerance * passage.size;
+  if (!segment.grazing && check.growth > sensitive_to_time)
+    compare_at_event(system, segment, par, scale, passage.size, check);
   return check;
 }
 

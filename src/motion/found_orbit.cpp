@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
@@ -173,7 +174,9 @@ FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, co
   const std::vector<SimulatedSegment> turn = in_standard_order(result.turn, first);
   FoundOrbit found;
   found.sizes = sizes_in(system, turn, par).sizes();
-  for (const SimulatedSegment& segment : turn) found.longest_wait += waits * segment.duration;
+  double period = 0.0;
+  for (const SimulatedSegment& segment : turn) period += segment.duration;
+  found.longest_wait = waits * period;
   for (const SimulatedSegment& segment : turn) {
     found.signature.push_back(segment.index);
     found.modes.push_back(segment.mode);
@@ -181,10 +184,10 @@ FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, co
   const VectorXd range = ranges(turn, result.ignorable, found.sizes);
   PeriodicOrbit orbit = shoot_finely(system, found, turn.front().start, par, result.ignorable);
   // Only where shooting has closed the orbit does its map have all segments.
-  if (const std::size_t period = orbit.converged ? true_period(found, orbit, range) : turn.size();
-      period < turn.size()) {
-    found.signature.resize(period);
-    found.modes.resize(period);
+  if (const std::size_t events = orbit.converged ? true_period(found, orbit, range) : turn.size();
+      events < turn.size()) {
+    found.signature.resize(events);
+    found.modes.resize(events);
     orbit = shoot_finely(system, found, orbit.start, par, result.ignorable);
   }
   found.start = orbit.start;
@@ -215,36 +218,76 @@ constexpr double wanted_error = 1e-7;
 constexpr int most_intervals = 1000;
 constexpr int first_samples = 1600;
 
-/// x_s at duration * tau, the first and last columns being those of the refined orbit.
-MatrixXd sample_segment(const HybridSystem& system, int field, const MapSegment& segment, const VectorXd& par,
-                        const FoundOrbit& orbit, const std::vector<double>& tau) {
-  MatrixXd states = segment.start.replicate(1, static_cast<Eigen::Index>(tau.size()));
-  states.rightCols(1) = segment.end;
-  FlowOptions options;
-  options.variational = false;
-  options.method = orbit.method;
-  options.sizes = orbit.sizes;
-  options.relative_tolerance = 1e-13;
-  options.absolute_tolerance = 1e-14;
-  options.max_steps = 10000000;
-  CvodesFlow flow(system, field, segment.start, par, options);
-  std::size_t next = 1;
-  flow.on_piece([&](double, double to) {
-    for (; next + 1 < tau.size() && tau[next] * segment.duration <= to; ++next)
-      states.col(static_cast<Eigen::Index>(next)) = flow.state_at(tau[next] * segment.duration);
-    return true;
-  });
-  if (segment.duration > 0.0) flow.advance(segment.duration);
-  return states;
-}
+/// Samples of one segment.
+///
+/// A node's time is known to its rounding, which is more than a sharp part takes where that lies far from the start: a
+/// spike of 1e-10 after 100 units of time. So integration begins anew, at time 0, where samples are that close.
+class SegmentSampler {
+ public:
+  SegmentSampler(const HybridSystem& system, const FoundOrbit& orbit, std::size_t s, const VectorXd& par)
+      : system_(system), index_(orbit.signature[s]), segment_(orbit.map.segments[s]), par_(par) {
+    options_.variational = false;
+    options_.method = orbit.method;
+    options_.sizes = orbit.sizes;
+    options_.relative_tolerance = 1e-13;
+    options_.absolute_tolerance = 1e-14;
+    options_.max_steps = 10000000;
+  }
+
+  /// x_s at duration * tau, the first and last columns being those of the refined orbit.
+  MatrixXd at(const std::vector<double>& tau) const {
+    MatrixXd states = segment_.start.replicate(1, static_cast<Eigen::Index>(tau.size()));
+    states.rightCols(1) = segment_.end;
+    if (segment_.duration == 0.0) return states;
+    for (std::size_t first = 0; first + 2 < tau.size();) first = sample_from(first, tau, states);
+    return states;
+  }
+
+ private:
+  /// Up to where integration must begin anew, or to the last sample before the end.
+  std::size_t sample_from(std::size_t first, const std::vector<double>& tau, MatrixXd& states) const {
+    constexpr double closest = 1e-6;  // of the time since the start: the spacing's rounding is 1e-10 of it
+    std::size_t last = first + 1;
+    while (last + 2 < tau.size() && tau[last + 1] - tau[last] > closest * (tau[last] - tau[first])) ++last;
+    const VectorXd start = states.col(static_cast<Eigen::Index>(first));
+    double duration = segment_.duration;
+    if (const double left = 1.0 - tau[first]; first > 0 && last + 2 == tau.size())
+      duration = time_to_event(start, left * duration, states) / left;
+    CvodesFlow flow(system_, index_.field, start, par_, options_);
+    const auto time = [&](std::size_t k) { return (tau[k] - tau[first]) * duration; };
+    std::size_t next = first + 1;
+    flow.on_piece([&](double, double to) {
+      for (; next <= last && time(next) <= to; ++next)
+        states.col(static_cast<Eigen::Index>(next)) = flow.state_at(time(next));
+      return true;
+    });
+    flow.advance(time(last));
+    return last;
+  }
+
+  /// The end of a short last part from `start`, whose time has lost its digits, by the event itself.
+  double time_to_event(const VectorXd& start, double expected, MatrixXd& states) const {
+    if (index_.event == no_function) return expected;
+    CvodesFlow flow(system_, index_.field, start, par_, options_);
+    flow.watch({index_.event});
+    if (flow.advance(2.0 * expected) != Progress::root) return expected;
+    states.rightCols(1) = flow.state();
+    return flow.time();
+  }
+
+  const HybridSystem& system_;
+  IndexVector index_;
+  const MapSegment& segment_;
+  const VectorXd& par_;
+  FlowOptions options_;
+};
 
 MatrixXd sample_all(const HybridSystem& system, const FoundOrbit& orbit, const VectorXd& par,
                     const std::vector<double>& tau) {
   const Eigen::Index n = system.dimension();
   MatrixXd stacked(n * static_cast<Eigen::Index>(orbit.signature.size()), static_cast<Eigen::Index>(tau.size()));
   for (std::size_t s = 0; s < orbit.signature.size(); ++s)
-    stacked.middleRows(static_cast<Eigen::Index>(s) * n, n) =
-        sample_segment(system, orbit.signature[s].field, orbit.map.segments[s], par, orbit, tau);
+    stacked.middleRows(static_cast<Eigen::Index>(s) * n, n) = SegmentSampler(system, orbit, s, par).at(tau);
   return stacked;
 }
 
@@ -290,6 +333,26 @@ Orbit on_mesh(const HybridSystem& system, const FoundOrbit& orbit, const VectorX
 }
 
 }  // namespace
+
+std::optional<FastPart> fastest_part(const OrbitSamples& samples, int dimension) {
+  constexpr double fewest_digits = 16.0 * std::numeric_limits<double>::epsilon(), away = 1e-6;
+  const std::vector<double>& tau = samples.tau;
+  const auto close =
+      std::adjacent_find(tau.begin(), tau.end(), [](double a, double b) { return b - a < fewest_digits; });
+  if (close == tau.end()) return std::nullopt;
+  const Eigen::Index k = close - tau.begin();
+  const auto far = std::find_if(tau.rbegin(), tau.rend(), [&](double t) { return t < *close - away; });
+  const Eigen::Index before =
+      far != tau.rend() ? tau.rend() - far - 1 : std::upper_bound(tau.begin(), tau.end(), *close + away) - tau.begin();
+  const VectorXd range = samples.states.rowwise().maxCoeff() - samples.states.rowwise().minCoeff();
+  Eigen::Index row = 0;
+  (samples.states.col(k) - samples.states.col(before))
+      .cwiseAbs()
+      .cwiseQuotient(range.cwiseMax(std::numeric_limits<double>::min()))
+      .maxCoeff(&row);
+  return FastPart{static_cast<int>(row) / dimension + 1, static_cast<int>(row) % dimension + 1, samples.states(row, k),
+                  samples.states(row, before)};
+}
 
 OrbitSamples sample_orbit(const HybridSystem& system, const FoundOrbit& orbit, const VectorXd& par, int intervals,
                           int collocation) {

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <complex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,9 +29,9 @@ struct FoundOrbit {
   bool converged = false;
   std::string message;  ///< why not
   Signature signature;
-  std::vector<Mode> modes;  ///< what each segment watched
-  Eigen::VectorXd start;    ///< x_1(0)
-  ReturnMap map;            ///< one turn from there
+  std::vector<Mode> modes;     ///< what each segment watched
+  Eigen::VectorXd start;       ///< x_1(0)
+  ReturnMap map;               ///< one turn from there
   /// Floquet multipliers, largest modulus first; the 1 of each ignorable state left out.
   std::vector<std::complex<double>> multipliers;
   Eigen::VectorXd advance;                              ///< of each state in one turn: zero but for ignorable states
@@ -72,6 +73,15 @@ struct OrbitSamples {
   int intervals = 0;        ///< of the mesh
   double error = 0.0;       ///< of polynomials of degree c on it, estimated_interpolation_error()
 };
+
+/// Where samples lie so close together that a time, a share of the segment's duration, has no digits left for them.
+struct FastPart {
+  int segment = 1;      ///< in which most happens there
+  int state = 1;        ///< that changes most there, as a share of its range
+  double value = 0.0;   ///< of that state
+  double before = 0.0;  ///< that value a millionth of the duration before, or after, where the segment begins with it
+};
+std::optional<FastPart> fastest_part(const OrbitSamples& samples, int dimension);
 
 /// The mesh equidistributes the error that polynomials of degree `collocation` would make. It has `intervals`
 /// intervals, and more where the orbit is so sharp that the error would be larger than 1e-7.

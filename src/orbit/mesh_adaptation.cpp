@@ -33,6 +33,9 @@ constexpr double roundings_of_a_node = 4.0;
 /// of the largest.
 constexpr double least_share = 1e-3;
 
+/// Of the mean density of intervals, where nothing happens.
+constexpr double least_density = 1e-3;
+
 double power(double base, int exponent) {
   double result = base;
   for (int k = 1; k < exponent; ++k) result *= base;
@@ -155,16 +158,18 @@ void MeshEquidistribution::Monitor::add_segment(const OrbitShape& shape, const E
   }
 }
 
-/// Two sweeps keep neighbouring intervals comparable; a floor keeps every interval finite.
-void MeshEquidistribution::Monitor::smooth() {
+/// Two sweeps keep neighbouring intervals comparable. A floor keeps every interval finite: a share of the mean, so that
+/// it takes few of the intervals, however sharp the orbit is.
+void MeshEquidistribution::Monitor::smooth(std::span<const double> mesh) {
   for (int sweep = 0; sweep < 2; ++sweep) {
     smoothed = values;
     for (Eigen::Index j = 1; j + 1 < values.size(); ++j)
       smoothed(j) = 0.25 * (values(j - 1) + 2.0 * values(j) + values(j + 1));
     values.swap(smoothed);
   }
-  const double least = 1e-3 * values.maxCoeff();
-  for (double& value : values) value = std::max(value, least);
+  double mean = 0.0;
+  for (int j = 0; j < values.size(); ++j) mean += values(j) * length(mesh, j);
+  for (double& value : values) value = std::max(value, least_density * mean);
 }
 
 /// That of segment `pattern`, or of all on their mesh in common. False where no derivative is known.
@@ -237,7 +242,7 @@ void MeshEquidistribution::put_mesh(const Orbit& x, const CollocationRule& rule,
   };
   if (!find_monitor(x, rule, pattern)) return put(resampled_mesh(old, intervals));
   Monitor& monitor = monitors_[index(pattern)];
-  monitor.smooth();
+  monitor.smooth(old);
   split(old, monitor.values, intervals, monitor.cumulative, monitor.adapted);
   // The sum over components equidistributes none of them by itself. The local error on an interval is the (c+1)-th
   // power of the integral of |u^(c+1)|^(1/(c+1)).

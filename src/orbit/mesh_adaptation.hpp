@@ -50,7 +50,7 @@ class MeshEquidistribution {
 
     bool is_rounding(int k) const { return (derivatives.row(k).array() <= rounding.row(k).array()).all(); }
     void add_segment(const OrbitShape& shape, const Eigen::VectorXd& sizes);
-    void smooth();
+    void smooth(std::span<const double> mesh);
   };
 
   void deal_out(const Orbit& x, const CollocationRule& rule, int intervals);

@@ -74,15 +74,15 @@ constexpr double surface = 1e-9;  // h below minus this, times its scale, is neg
 
 /// The values of an event function along a segment.
 struct EventValues {
-  double least = 0.0, scale = 1.0;
+  double least = no_bound, scale = 0.0;
 
-  EventValues(const HybridSystem& system, int event, const Eigen::MatrixXd& states, const Eigen::VectorXd& par) {
-    least = no_bound;
+  EventValues(const HybridSystem& system, int event, const Eigen::MatrixXd& states, const Eigen::VectorXd& par,
+              const Eigen::VectorXd& sizes) {
     for (const auto& column : states.colwise()) {
       const Eigen::VectorXd x = column;
-      const double h = system.event(event, x.data(), par.data());
-      scale = std::max(scale, std::abs(h));
-      if (!(h >= least)) least = h;  // NaN is kept
+      const EventAt at = event_at(system, event, x.data(), par.data());
+      scale = std::max(scale, at.scale(x.data(), sizes));
+      if (!(at.h >= least)) least = at.h;  // NaN is kept
     }
   }
   bool is_negative() const { return !(least >= -surface * scale); }
@@ -110,7 +110,7 @@ std::vector<int> monitored_events(const HybridSystem& system, const FoundOrbit& 
                                   const Eigen::MatrixXd& states, const Eigen::VectorXd& par) {
   std::vector<int> events;
   for (const int event : orbit.modes[s].all_events()) {
-    const EventValues values(system, event, states, par);
+    const EventValues values(system, event, states, par, orbit.sizes);
     if (values.is_negative() || is_section(system, orbit, s, event, states, par)) continue;
     events.push_back(event);
   }
@@ -176,7 +176,7 @@ std::string unmonitored_events(const HybridSystem& system, const FoundOrbit& orb
   for (std::size_t s = 0; s < orbit.signature.size(); ++s) {
     const Eigen::MatrixXd states = samples.states.middleRows(static_cast<Eigen::Index>(s) * n, n);
     for (const int event : orbit.modes[s].all_events())
-      if (EventValues(system, event, states, par).is_negative() && !is_section(system, orbit, s, event, states, par))
+      if (EventValues(system, event, states, par, orbit.sizes).is_negative() && !is_section(system, orbit, s, event, states, par))
         text += fmt::format(
             "Event {} ({}) is negative on segment {}, so it is not monitored there: if field {} ({}) holds only where "
             "it "

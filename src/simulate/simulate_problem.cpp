@@ -303,13 +303,10 @@ std::string hand_over_equilibrium(const SimulationRequest& request, const Simula
 }
 
 /// Writes the orbit for `tchat run`; what to say about it.
-std::string hand_over(const SimulationRequest& request, const SimulationConstants& constants,
-                      const HybridSystem& system, const FoundOrbit& orbit, const VectorXd& par,
+std::string hand_over(const SimulationRequest& request, const RunSettings& base, const HybridSystem& system,
+                      const FoundOrbit& orbit, const OrbitSamples& samples, const VectorXd& par, int parameter,
                       const std::string& name) {
-  const RunSettings base = constants.is_given() ? constants.settings : default_orbit_settings(constants.settings);
-  const OrbitSamples samples = sample_orbit(system, orbit, par, base.mesh_intervals, base.collocation_points);
-  RunSettings settings =
-      orbit_settings(system, base, orbit, samples, par, continuation_parameter(request, constants, system));
+  RunSettings settings = orbit_settings(system, base, orbit, samples, par, parameter);
   const OrbitPaths paths = orbit_paths(name);
   settings.problem = problem_to_record(request.problem.value_or(request.name), paths.constants);
   write_whole_file(paths.data, orbit_data_text(system, orbit, samples, par));
@@ -332,6 +329,22 @@ std::string obstacle(const HybridSystem& system, const SimulationResult& result,
       return fmt::format("{} does not return; `tchat run` needs a problem without that state",
                          system.state_name(static_cast<int>(i) + 1));
   return "";
+}
+
+/// "" when the samples have a mesh on which the orbit can be continued; otherwise why not.
+std::string unresolved(const HybridSystem& system, const OrbitSamples& samples) {
+  constexpr double largest_error = 1e-2;
+  const std::optional<FastPart> fast = fastest_part(samples, system.dimension());
+  if (fast)
+    return fmt::format(
+        "segment {} is so fast where {} = {:.4g} that the times of its points have too few digits; divide it by an "
+        "event "
+        "that changes nothing, as at {} = {:.4g}",
+        fast->segment, system.state_name(fast->state), fast->value, system.state_name(fast->state), fast->before);
+  if (samples.error <= largest_error) return "";
+  return fmt::format(
+      "NTST = {} intervals leave an error of {:.1e}; divide its sharp segments by events that change nothing",
+      samples.intervals, samples.error);
 }
 
 }  // namespace
@@ -463,7 +476,14 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
     return 1;
   }
   if (loaded.library->has_added_section()) orbit = without_cuts(std::move(orbit), own_events(system));
-  say(hand_over(request, constants, system, orbit, start.par, orbit_name));
+  const RunSettings base = constants.is_given() ? constants.settings : default_orbit_settings(constants.settings);
+  const OrbitSamples samples = sample_orbit(system, orbit, start.par, base.mesh_intervals, base.collocation_points);
+  if (const std::string why = unresolved(system, samples); !why.empty()) {
+    warnings << fmt::format("tchat: --dat: nothing written, {}\n", why);
+    return 1;
+  }
+  say(hand_over(request, base, system, orbit, samples, start.par, continuation_parameter(request, constants, system),
+                orbit_name));
   return 0;
 }
 

@@ -1,0 +1,138 @@
+// Orbits with the shortest and the longest parts: spikes for which times have hardly any digits, two events at one
+// instant, a period that grows without bound where equilibria are born on the orbit.
+#include <catch2/catch.hpp>
+#include <numbers>
+
+#include "end_to_end/workspace.hpp"
+
+using namespace test_support;
+
+namespace {
+
+/// The adaptive exponential neuron of Brette and Gerstner in pF, nS, mV, pA and ms; `further`: lines of its own.
+std::string neuron(const std::string& further) {
+  return R"(par I=700, b=80.5, Vpeak=0, a=4
+number C=281, gL=30, EL=-70.6, VT=-50.4, DT=2, tw=144, Vr=-60
+init V=-65, w=50
+V' = (-gL*(V - EL) + gL*DT*exp((V - VT)/DT) - w + I)/C
+w' = (a*(V - EL) - w)/tw
+event spike = Vpeak - V
+jump reset: V -> Vr, w -> w + b
+)" + further;
+}
+
+/// The last number of the first row of a branch: its period.
+double first_period(const std::string& branch) {
+  const std::size_t header = branch.find("PERIOD");
+  REQUIRE(header != std::string::npos);
+  const std::size_t row = branch.find('\n', header) + 1;
+  const std::string line = branch.substr(row, branch.find('\n', row) - row);
+  return std::stod(line.substr(line.find_last_of(' ') + 1));
+}
+
+}  // namespace
+
+TEST_CASE("A spike cut at 0 mV, where V rises by 2e10 mV/ms: simulated, continued and verified") {
+  const Workspace workspace;
+  workspace.write("adex.tch", neuron("after any: spike -> reset\n"));
+  const std::string out = workspace.succeed("simulate adex --dat s").out;
+  CHECK(out.find("negative") == std::string::npos);
+  workspace.succeed("run adex -c s -d s -o b ICP=[I] DS=1 DSMAX=50 NMX=20 -q");
+  // By integration at a tolerance of 1e-12, with V instead of t as the independent variable where it rises.
+  CHECK(first_period(workspace.read("p.b")) == Approx(131.18618959924).epsilon(1e-9));
+  CHECK(workspace.succeed("verify q.b").out.find("2 labels agree") != std::string::npos);
+  // From its file, too.
+  workspace.succeed("run adex -c s -s b IRS=EP2 -o further NMX=3 -q");
+  CHECK(workspace.succeed("verify q.further").out.find("1 labels agree") != std::string::npos);
+}
+
+TEST_CASE("A spike for which times have too few digits is not written: an event that divides it cures that") {
+  const Workspace workspace;
+  workspace.write("adex.tch", neuron("after any: spike -> reset\n"));
+  const auto refused = workspace.tchat("simulate adex PAR(Vpeak)=20 --dat s -q");
+  CHECK(refused.status == 1);
+  CHECK(refused.err.find("divide it by an event that changes nothing, as at V = -28") != std::string::npos);
+  workspace.write("cut.tch",
+                  neuron("event cut = -28 - V\nafter start, spike: cut -> identity\nafter cut: spike -> reset\n"));
+  workspace.succeed("simulate cut PAR(Vpeak)=20 --dat c -q");
+  workspace.succeed("run cut -c c -d c -o c ICP=[I] DS=1 DSMAX=5 NMX=5 -q");
+  CHECK(workspace.succeed("verify q.c").out.find("2 labels agree") != std::string::npos);
+}
+
+TEST_CASE("Two oscillators hit their walls together: the orbit with a segment of no duration is found and continued") {
+  const Workspace workspace;
+  // The linear oscillator of the dissertation twice, so that each has its orbits; k couples them and is zero on these.
+  workspace.write("twins.tch", R"(par alpha=3.2, omega=2.0072, zeta=0.05, r=0.8, k=0
+init y2=1
+growth = 1 - y1^2 - y2^2
+x' = v
+v' = alpha*y2 - 2*zeta*v - x + k*(z - x)
+z' = w
+w' = alpha*y2 - 2*zeta*w - z + k*(x - z)
+y1' = growth*y1 + omega*y2
+y2' = growth*y2 - omega*y1
+event wall1 = 1 - x
+event wall2 = 1 - z
+jump hit1: v -> -r*v
+jump hit2: w -> -r*w
+after any: wall1 -> hit1, wall2 -> hit2
+)");
+  const std::string out = workspace.succeed("simulate twins --dat s").out;
+  CHECK(out.find("flow for 0 until wall2") != std::string::npos);
+  CHECK(out.find("negative") == std::string::npos);
+  const std::string branch =
+      workspace.succeed("run twins -c s -d s -o b ICP=[alpha] DS=-.02 DSMAX=.5 RL0=2.95 NMX=200 UZR={alpha:3.0358}")
+          .out;
+  INFO(branch);
+  // Both double their periods where one does alone: alpha = 3.036193566 in closed form.
+  CHECK(branch.find("at alpha = 3.036193566: period doubling: 2 multipliers go through -1 together") !=
+        std::string::npos);
+  CHECK(workspace.succeed("verify q.b").out.find("agree") != std::string::npos);
+}
+
+TEST_CASE("A period grows without bound towards a fold of equilibria on the orbit, and the run says so") {
+  // The theta neuron: T = pi / sqrt(a).
+  const Workspace workspace;
+  workspace.write("theta.tch", R"(par a=0.5
+number turn=6.283185307179586
+init th=0
+th' = 1 - cos(th) + (1 + cos(th))*a
+event round = turn - th
+jump reset: th -> th - turn
+after any: round -> reset
+)");
+  workspace.succeed("simulate theta --dat s -q");
+  const std::string out = workspace.succeed("run theta -c s -d s -o b ICP=[a] DS=-.02 DSMAX=.2 NMX=200 RL0=-1").out;
+  INFO(out);
+  CHECK(out.find("fold of the equilibria") != std::string::npos);
+  CHECK(out.find("you might") == std::string::npos);
+}
+
+TEST_CASE("Two multipliers go through +1 together, as the symmetry of a ring of three makes them do: BP and a branch") {
+  // Stuart-Landau oscillators z' = (1 + 3 i) z - (1 + i c) |z|^2 z + K (1 + i b) (sum of the others - 2 z). In phase,
+  // each of the two other modes has l^2 + 2 (1 + k) l + k^2 (1 + b^2) + 2 k (1 + b c) = 0 with k = 3 K: zero at
+  // c = -(k (1 + b^2) + 2) / (2 b) = -5/4.
+  const Workspace workspace;
+  std::string ring = "par c=-1, b=2, K=0.2\ninit x1=1, y1=0, x2=1, y2=0, x3=1, y3=0\n";
+  for (const auto* const k : {"123", "231", "312"}) {
+    const std::string a(1, k[0]), b(1, k[1]), c(1, k[2]);
+    ring += "r" + a + " = x" + a + "^2 + y" + a + "^2\n";
+    ring +=
+        "p" + a + " = x" + b + " + x" + c + " - 2*x" + a + "\nq" + a + " = y" + b + " + y" + c + " - 2*y" + a + "\n";
+    ring += "x" + a + "' = x" + a + " - 3*y" + a + " - r" + a + "*(x" + a + " - c*y" + a + ") + K*(p" + a + " - b*q" +
+            a + ")\n";
+    ring += "y" + a + "' = y" + a + " + 3*x" + a + " - r" + a + "*(y" + a + " + c*x" + a + ") + K*(q" + a + " + b*p" +
+            a + ")\n";
+  }
+  workspace.write("ring.tch", ring);
+  workspace.succeed("simulate ring --dat s -q");
+  const std::string out = workspace.succeed("run ring -c s -d s -o b ICP=[c] DS=-.02 DSMAX=.1 RL0=-1.5 NMX=100").out;
+  INFO(out);
+  CHECK(out.find("BP label 2 at c = -1.25: branch point: 2 multipliers go through +1 together") != std::string::npos);
+  CHECK(out.find("may be missing") == std::string::npos);
+  // The in-phase orbit has the period 2 pi / (3 - c) whatever its stability. Others have another one.
+  const std::string branch = workspace.succeed("run ring -c r.b -s b IRS=BP1 ISW=-1 -o c NMX=5").out;
+  INFO(branch);
+  CHECK(first_period(workspace.read("p.c")) != Approx(2.0 * std::numbers::pi / (3.0 + 1.25)).epsilon(1e-4));
+  CHECK(workspace.succeed("verify q.c").out.find("agree") != std::string::npos);
+}
