@@ -21,6 +21,7 @@ using Eigen::VectorXd;
 
 constexpr double waits = 10.0;       // for the event of a segment, as a multiple of the simulated turn
 constexpr double same_orbit = 0.1;   // largest correction, as a share of the orbit's range
+constexpr double together = 1e-12;   // events so far apart, as a share of the period
 constexpr double same_state = 1e-7;  // of points of the refined orbit, likewise
 
 bool ends_in_section(const HybridSystem& system, const std::vector<SimulatedSegment>& turn, std::size_t s) {
@@ -45,10 +46,19 @@ SimulatedSegment joined(const SimulatedSegment& first, SimulatedSegment second) 
   return second;
 }
 
+/// Events that come together to rounding come together.
+void settle_instants(FoundOrbit& found) {
+  for (std::size_t s = 0; s < found.map.segments.size(); ++s) {
+    double& duration = found.map.segments[s].duration;
+    if (found.instants[s] && std::abs(duration) <= found.uncertainty * found.map.period) duration = 0.0;
+  }
+}
+
 PeriodicOrbit shoot_finely(const HybridSystem& system, FoundOrbit& found, const VectorXd& guess, const VectorXd& par,
                            const std::vector<Eigen::Index>& ignorable) {
   ShootingOptions options;
   options.ignorable = ignorable;
+  options.instants = found.instants;
   options.flow.sizes = found.sizes;
   options.flow.max_duration = found.longest_wait;
   const PeriodicOrbit orbit = shoot(system, found.signature, guess, par, options);
@@ -180,6 +190,7 @@ FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, co
   for (const SimulatedSegment& segment : turn) {
     found.signature.push_back(segment.index);
     found.modes.push_back(segment.mode);
+    found.instants.push_back(segment.duration <= together * period);
   }
   const VectorXd range = ranges(turn, result.ignorable, found.sizes);
   PeriodicOrbit orbit = shoot_finely(system, found, turn.front().start, par, result.ignorable);
@@ -188,10 +199,12 @@ FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, co
       events < turn.size()) {
     found.signature.resize(events);
     found.modes.resize(events);
+    found.instants.resize(events);
     orbit = shoot_finely(system, found, orbit.start, par, result.ignorable);
   }
   found.start = orbit.start;
   found.map = orbit.map;
+  settle_instants(found);
   found.iterations = orbit.iterations;
   if (!orbit.converged) {
     found.message = orbit.message;

@@ -30,6 +30,7 @@ struct FoundOrbit {
   std::string message;  ///< why not
   Signature signature;
   std::vector<Mode> modes;     ///< what each segment watched
+  std::vector<bool> instants;  ///< of each segment: has its event come together with the one before?
   Eigen::VectorXd start;       ///< x_1(0)
   ReturnMap map;               ///< one turn from there
   /// Floquet multipliers, largest modulus first; the 1 of each ignorable state left out.

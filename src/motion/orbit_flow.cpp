@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/messages.hpp"
@@ -82,6 +83,30 @@ SegmentFlow integrate_segment(const HybridSystem& system, const IndexVector& ind
   return result;
 }
 
+SegmentFlow integrate_to_instant(const HybridSystem& system, const IndexVector& index, const VectorXd& x0,
+                                 const VectorXd& par_given, const FlowOptions& options) {
+  constexpr int most_steps = 8;
+  const VectorXd par = full_parameters(system, par_given);
+  double time = 0.0;
+  for (int step = 0; step < most_steps; ++step) {
+    SegmentFlow flow = integrate_for(system, index.field, x0, par, time, options);
+    if (flow.status == FlowStatus::failed) return flow;
+    const EventAt at = event_at(system, index.event, index.field, flow.end_state.data(), par.data());
+    const double change = -at.h / at.rate();
+    const double next = time + change;
+    flow.event_velocity = at.rate();
+    flow.status = FlowStatus::event_reached;
+    if (next == time || (step > 1 && std::abs(change) <= std::numeric_limits<double>::epsilon() * std::abs(time)))
+      return flow;
+    if (!std::isfinite(change) || std::abs(next) > options.max_duration) break;
+    time = next;
+  }
+  SegmentFlow none;
+  none.message = fmt::format("{} has no zero next to the start of the segment",
+                             system.function_name(FunctionKind::event, index.event));
+  return none;
+}
+
 SegmentFlow integrate_for(const HybridSystem& system, int field, const VectorXd& x0, const VectorXd& par_given,
                           double duration, const FlowOptions& options) {
   const VectorXd par = checked_parameters(system, field, x0, par_given, options);
@@ -129,9 +154,10 @@ VectorXcd sorted_eigenvalues(const MatrixXd& m) {
 
 /// Adds one segment to a return map that has come to x; moves x to the next start. False with a message on failure.
 bool add_segment(const HybridSystem& system, const IndexVector& index, const VectorXd& par, const FlowOptions& options,
-                 VectorXd& x, ReturnMap& map) {
+                 bool is_instant, VectorXd& x, ReturnMap& map) {
   const std::size_t number = map.segments.size() + 1;
-  const SegmentFlow flow = integrate_segment(system, index, x, par, options);
+  const SegmentFlow flow = is_instant ? integrate_to_instant(system, index, x, par, options)
+                                      : integrate_segment(system, index, x, par, options);
   if (flow.status != FlowStatus::event_reached) {
     map.message = fmt::format("segment {}: {}", number, flow.message);
     return false;
@@ -170,7 +196,7 @@ void require_signature(const HybridSystem& system, const Signature& signature) {
 }  // namespace
 
 ReturnMap return_map(const HybridSystem& system, const Signature& signature, const VectorXd& x1,
-                     const VectorXd& par_given, const FlowOptions& given) {
+                     const VectorXd& par_given, const FlowOptions& given, const std::vector<bool>& instants) {
   require_signature(system, signature);
   FlowOptions options = given;
   options.variational = true;
@@ -180,8 +206,8 @@ ReturnMap return_map(const HybridSystem& system, const Signature& signature, con
   map.derivative = MatrixXd::Identity(system.dimension(), system.dimension());
   map.parameter_derivative = MatrixXd::Zero(system.dimension(), static_cast<Eigen::Index>(options.active.size()));
   VectorXd x = x1;
-  for (const IndexVector& index : signature)
-    if (!add_segment(system, index, par, options, x, map)) return map;
+  for (std::size_t s = 0; s < signature.size(); ++s)
+    if (!add_segment(system, signature[s], par, options, !instants.empty() && instants[s], x, map)) return map;
   map.end = x;
   map.multipliers = sorted_eigenvalues(map.derivative);
   map.ok = map.end.allFinite() && map.derivative.allFinite();
@@ -197,7 +223,7 @@ PeriodicOrbit shoot(const HybridSystem& system, const Signature& signature, cons
   orbit.start = guess;
   double last_step = INFINITY;
   while (true) {
-    orbit.map = return_map(system, signature, orbit.start, par, options.flow);
+    orbit.map = return_map(system, signature, orbit.start, par, options.flow, options.instants);
     if (!orbit.map.ok) {
       orbit.message = orbit.map.message;
       return orbit;

@@ -49,6 +49,11 @@ Eigen::VectorXd full_parameters(const HybridSystem& system, const Eigen::VectorX
 SegmentFlow integrate_segment(const HybridSystem& system, const IndexVector& index, const Eigen::VectorXd& x0,
                               const Eigen::VectorXd& par, const FlowOptions& options = {});
 
+/// An event that comes at once, as the second of two that happen together: on an orbit beside it a little later, or
+/// earlier. Its time is the zero of h next to 0, of either sign, by Newton's method.
+SegmentFlow integrate_to_instant(const HybridSystem& system, const IndexVector& index, const Eigen::VectorXd& x0,
+                                 const Eigen::VectorXd& par, const FlowOptions& options = {});
+
 /// For a fixed duration, which may be zero or negative; ends with time_reached.
 SegmentFlow integrate_for(const HybridSystem& system, int field, const Eigen::VectorXd& x0, const Eigen::VectorXd& par,
                           double duration, const FlowOptions& options = {});
@@ -84,9 +89,11 @@ struct ReturnMap {
   Eigen::VectorXcd multipliers;          ///< eigenvalues of M, largest modulus first
 };
 
-/// One turn through the signature from x1 = x_1(0).
+/// One turn through the signature from x1 = x_1(0). `instants`: of each segment, does its event come at once? None does
+/// where this is empty.
 ReturnMap return_map(const HybridSystem& system, const Signature& signature, const Eigen::VectorXd& x1,
-                     const Eigen::VectorXd& par, const FlowOptions& options = {});
+                     const Eigen::VectorXd& par, const FlowOptions& options = {},
+                     const std::vector<bool>& instants = {});
 
 struct ShootingOptions {
   FlowOptions flow;
@@ -95,6 +102,7 @@ struct ShootingOptions {
   /// States that nothing depends on and that need not return (a position on an endless floor), from 0: kept at their
   /// start, and without an equation.
   std::vector<Eigen::Index> ignorable;
+  std::vector<bool> instants = {};  ///< as for return_map()
 };
 
 struct PeriodicOrbit {
