@@ -154,8 +154,9 @@ void OrbitTrend::add(const Orbit& x, double parameter) {
       sizes_(k) = std::max({sizes_(k), std::abs(low[a]), std::abs(high[a])});
     }
   });
-  if (first || !(std::abs(parameter - still_.parameter) <= standstill * (1.0 + std::abs(parameter))))
-    still_ = {parameter, x.period()};
+  if (first) first_parameter_ = parameter;
+  size_ = std::max({size_, std::abs(parameter), std::abs(parameter - first_parameter_)});
+  if (first || !(std::abs(parameter - still_.parameter) <= standstill * size_)) still_ = {parameter, x.period()};
   last_ = {parameter, x.period()};
 }
 
@@ -174,7 +175,7 @@ bool OrbitTrend::has_shrunk(const Orbit& x, double share) const {
 
 std::optional<PeriodGrowth> OrbitTrend::period_growth() const {
   if (!(still_.period > 0.0 && last_.period > growth * still_.period)) return std::nullopt;
-  return PeriodGrowth{still_.period, last_.period, last_.parameter};
+  return PeriodGrowth{still_.period, last_.period, last_.parameter, size_};
 }
 
 namespace {
@@ -221,16 +222,29 @@ SlowPoint slowest_point(const DefiningSystem& system, const Orbit& x, const Vect
   return slowest;
 }
 
-std::optional<Equilibrium> near_equilibrium(const DefiningSystem& system, const Orbit& x) {
+/// The equilibrium next to the orbit's slowest point, or, at index `active` of PAR, the fold at which two equilibria
+/// have vanished there.
+struct Resting {
+  std::optional<Equilibrium> equilibrium, fold;
+};
+
+Resting near_equilibrium(const DefiningSystem& system, const Orbit& x, double size_of_parameter) {
   const VectorXd ranges = state_ranges(x);
   const SlowPoint start = slowest_point(system, x, ranges);
-  if (start.state.size() == 0) return std::nullopt;
-  const std::optional<NearbyEquilibrium> found =
-      find_equilibrium(system.system(), start.field, start.state, x.par.data(), {});
-  if (!found) return std::nullopt;
-  const double distance = scaled_size(found->state - start.state, ranges);
-  if (!(distance <= at_rest_nearby)) return std::nullopt;
-  return Equilibrium{start.field, found->state, distance, eigenvalues(found->jacobian)};
+  if (start.state.size() == 0) return {};
+  const auto near = [&](const VectorXd& state, const Eigen::MatrixXd& jacobian) -> std::optional<Equilibrium> {
+    const double distance = scaled_size(state - start.state, ranges);
+    if (!(distance <= at_rest_nearby)) return std::nullopt;
+    return Equilibrium{start.field, state, distance, eigenvalues(jacobian)};
+  };
+  Resting resting;
+  const int active = system.free_parameters().front();
+  const auto fold = find_fold(system.system(), start.field, start.state, x.par, active);
+  if (fold && std::abs(fold->parameter - x.par(active - 1)) <= standstill * size_of_parameter)
+    resting.fold = near(fold->state, fold->jacobian);
+  if (const auto found = find_equilibrium(system.system(), start.field, start.state, x.par.data(), {}))
+    resting.equilibrium = near(found->state, found->jacobian);
+  return resting;
 }
 
 std::string eigenvalue_text(const Eigen::VectorXcd& values) {
@@ -255,17 +269,26 @@ bool is_left_by_flow(const Eigen::VectorXcd& values) {
 
 std::string homoclinic_limit(const DefiningSystem& system, const Orbit& x, const PeriodGrowth& growth,
                              const std::string& parameter_name) {
-  const std::optional<Equilibrium> at = near_equilibrium(system, x);
+  const Resting resting = near_equilibrium(system, x, growth.size);
+  const std::optional<Equilibrium>& at = resting.fold ? resting.fold : resting.equilibrium;
   if (!at) return "";
-  return fmt::format(
-      "the period grows, from {:.5g} to {:.5g}, while {} stays at {:.10g}, and the orbit comes within {:.1e} of its "
-      "size "
-      "to an equilibrium of field {} ({}): {}, eigenvalues {}; so the period grows without bound {}",
-      growth.from, growth.to, parameter_name, growth.parameter, at->distance, at->field,
-      system.system().function_name(FunctionKind::field, at->field), state_text(system.system(), x, at->state.data()),
-      eigenvalue_text(at->eigenvalues),
-      is_left_by_flow(at->eigenvalues) ? "towards a homoclinic or heteroclinic orbit"
-                                       : "towards an orbit that does not leave this equilibrium, which is no saddle");
+  const std::string field =
+      fmt::format("field {} ({})", at->field, system.system().function_name(FunctionKind::field, at->field));
+  const std::string state = state_text(system.system(), x, at->state.data());
+  const std::string grows = fmt::format(
+      "the period grows, from {:.5g} to {:.5g}, while {} stays at {:.10g}, and the "
+      "orbit comes within {:.1e} of its size to ",
+      growth.from, growth.to, parameter_name, growth.parameter, at->distance);
+  if (resting.fold)
+    return grows + fmt::format(
+                       "a fold of the equilibria of {}: {}, eigenvalues {}; so the period grows without bound "
+                       "towards a saddle-node on the orbit, or a homoclinic orbit beside it",
+                       field, state, eigenvalue_text(at->eigenvalues));
+  return grows + fmt::format("an equilibrium of {}: {}, eigenvalues {}; so the period grows without bound {}", field,
+                             state, eigenvalue_text(at->eigenvalues),
+                             is_left_by_flow(at->eigenvalues)
+                                 ? "towards a homoclinic or heteroclinic orbit"
+                                 : "towards an orbit that does not leave this equilibrium, which is no saddle");
 }
 
 SpecialPoint BranchAnalysis::shrunk(const Orbit&, bool) const { return {}; }

@@ -35,6 +35,7 @@ struct PeriodGrowth {
   double from = 0.0;
   double to = 0.0;
   double parameter = 0.0;
+  double size = 0.0;  ///< of the parameter on the branch: of its values and of its range
 };
 
 class OrbitTrend {
@@ -61,7 +62,8 @@ class OrbitTrend {
   int orbits_;
   Eigen::VectorXd largest_;  // ranges
   Eigen::VectorXd sizes_;    // largest moduli of the states
-  Place still_;              // since when the parameter has stood still
+  double first_parameter_ = 0.0, size_ = 0.0;
+  Place still_;  // since when the parameter has stood still
   Place last_;
 };
 

@@ -351,4 +351,38 @@ std::optional<NearbyEquilibrium> find_equilibrium(const HybridSystem& system, in
   return std::nullopt;
 }
 
+std::optional<NearbyFold> find_fold(const HybridSystem& system, int field, const Eigen::VectorXd& near,
+                                    Eigen::VectorXd par, int active) {
+  constexpr int most_steps = 30;
+  constexpr double converged = 1e-8;  // shares of sizes of the unknowns; the double zero of f leaves half of the digits
+  const Eigen::Index n = near.size();
+  const int parameters[] = {active};
+  Eigen::VectorXd x = near, f(n), fv(n);
+  Eigen::MatrixXd fx(n, n), fvx(n, n);
+  Eigen::VectorXd fp(n), fvp(n);
+  for (int step = 0; step < most_steps; ++step) {
+    system.first(FunctionKind::field, field, x.data(), par.data(), parameters, f.data(), fx.data(), fp.data());
+    if (!f.allFinite() || !fx.allFinite()) return std::nullopt;
+    const SingularVectors least = singular_vectors(fx);
+    const Eigen::VectorXd v = least.right.col(n - 1), w = least.left.col(n - 1);
+    Eigen::VectorXd direction = Eigen::VectorXd::Zero(n + 1);
+    direction.head(n) = v;
+    system.second(FunctionKind::field, field, x.data(), par.data(), parameters, direction.data(), fv.data(), fvx.data(),
+                  fvp.data());
+    Eigen::MatrixXd matrix(n + 1, n + 1);
+    matrix << fx, fp, w.transpose() * fvx, w.dot(fvp);
+    Eigen::VectorXd value(n + 1);
+    value << f, w.dot(fx * v);
+    const Eigen::VectorXd change = solve(matrix, -value);
+    if (!change.allFinite()) return std::nullopt;
+    x += change.head(n);
+    double& p = par(active - 1);
+    p += change(n);
+    const bool stays =
+        change.head(n).norm() <= converged * (1.0 + x.norm()) && (fp * change(n)).norm() <= converged * fx.norm() * (1.0 + x.norm());
+    if (stays) return NearbyFold{x, p, fx};
+  }
+  return std::nullopt;
+}
+
 }  // namespace tchat

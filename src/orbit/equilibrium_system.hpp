@@ -171,4 +171,16 @@ struct NearbyEquilibrium {
 std::optional<NearbyEquilibrium> find_equilibrium(const HybridSystem& system, int field, const Eigen::VectorXd& near,
                                                   const double* par, const std::vector<Eigen::Index>& ignored);
 
+/// A fold of equilibria in parameter `active` (a PAR index): where f = 0 and f_x is singular.
+struct NearbyFold {
+  Eigen::VectorXd state;     ///< n
+  double parameter = 0.0;    ///< the value of the active one
+  Eigen::MatrixXd jacobian;  ///< f_x there
+};
+
+/// By Newton's method for n + 1 unknowns x and p: f = 0 (n) and the least singular value w^T f_x v = 0 (1), whose
+/// derivatives are w^T (d f_x) v. Nothing where that does not converge.
+std::optional<NearbyFold> find_fold(const HybridSystem& system, int field, const Eigen::VectorXd& near,
+                                    Eigen::VectorXd par, int active);
+
 }  // namespace tchat

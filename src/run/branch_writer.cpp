@@ -259,6 +259,7 @@ std::string reason_text(const BranchSummary& summary, bool told) {
 /// What was tried at an abnormal end, and what a user might change.
 std::string advice(const BranchSummary& summary) {
   if (summary.reason != EndReason::no_convergence && summary.reason != EndReason::first_step_failed) return "";
+  if (!summary.remark.empty()) return "";  // it says why
   if (summary.undefined_function)
     return "  tried: halving the step down to DSMIN; beyond the last point that function has no value.\n"
            "  you might: end the branch before it (RL0, RL1); let the plugin give a value there (a root or logarithm "
@@ -287,6 +288,7 @@ std::string accuracy(const BranchSummary& summary) {
                     summary.worst_structural);
   if (summary.worst_unfolding) text += fmt::format("; lambda, which should be 0: {:.1e}", *summary.worst_unfolding);
   text += "\n";
+  if (!summary.remark.empty()) return text;  // no mesh resolves a period without bound
   const SummaryWords& words = summary.family->summary;
   const std::string structural = summary.worst_structural > coarse_mesh ? words.structural_advice : "";
   const std::string mesh = summary.worst_estimated_error > coarse_mesh ? mesh_advice : "";
