@@ -240,14 +240,14 @@ bool SpecialPointSearch::resolved(const PathPoint& here, const Candidate& next) 
   const auto turns = [&] { return !(dot(here.dual, next.point.tangent) > hardly_turned); };
   const double at = history_.back().arclength + std::abs(next.ds);
   for (std::size_t i = 0; i < tests_.size(); ++i) {
-    if (!next.data.tests[i].value) continue;
+    const Resolution resolution = tests_[i]->resolution();
+    if (!next.data.tests[i].value || resolution == Resolution::any) continue;
     std::array<TrendValue, history_length> values;
     std::size_t count = 0;
     for (const Past& point : history_)
       if (point.tests[i].value) values[count++] = {point.arclength, beyond_level(point.tests[i])};
     const std::span<const TrendValue> past(values.data(), count);
     const TrendValue last{at, beyond_level(next.data.tests[i])};
-    const Resolution resolution = tests_[i]->resolution();
     if (resolution == Resolution::direction && is_near_zero(i, next.data.tests[i]) && turns()) return false;
     const bool is_resolved = resolution == Resolution::trend ? follows_trend(past, last) : !has_two_zeros(past, last);
     if (!is_resolved) return false;
@@ -551,9 +551,11 @@ SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const Path
   const auto at = [&](double length) { return evaluate_at(length) ? found.value : std::optional<double>(); };
   // No level of rounding: where a function is flat, it is small far from its zero.
   const LocatedZero zero = locate_zero_surely(at, bracket, settings_.tolerance, 0.0, settings_.max_evaluations);
-  const Search search = zero.converged()                  ? Search::located
-                        : zero.status == ZeroSearch::jump ? Search::jump
-                                                          : Search::failed;
+  const bool is_jump = zero.status == ZeroSearch::jump;
+  const Search search = zero.converged()     ? Search::located
+                        : is_jump && genuine ? Search::jump
+                        : is_jump            ? Search::no_special_point
+                                             : Search::failed;
   return {test, zero.ds, search};
 }
 

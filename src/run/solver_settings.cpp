@@ -90,6 +90,7 @@ void add_bifurcations(TestList& tests, const DefiningSystem& system, const RunSe
   if (kind == 2 || kind == 3) tests.push_back(std::make_unique<BranchPointTest>(stop));
   if ((kind == 2 || kind == 4) && has_multipliers(settings.problem_type)) {
     tests.push_back(std::make_unique<PeriodDoublingTest>(stop));
+    for (const int target : {1, -1}) tests.push_back(std::make_unique<MultiplierPairTest>(target, stop));
     // Where a function is conserved pairs stay on the unit circle until they meet.
     if (settings.conserved.empty()) tests.push_back(std::make_unique<TorusTest>(stop));
   }

@@ -38,10 +38,11 @@ bool is_section(const DefiningSystem& system, int s) {
          is_identity_jump(system.system(), index);
 }
 
-/// A fold located to EPSS has this multiplier nearer to 1.
-bool has_multiplier_one(const FloquetMultipliers& multipliers) {
+/// How many are at the target where a zero has been located there: to EPSS they are nearer than this.
+long multipliers_at(const FloquetMultipliers& multipliers, double target) {
+  constexpr double located = 1e-3;
   const auto list = multipliers.nontrivial();
-  return std::any_of(list.begin(), list.end(), [](const auto& mu) { return std::abs(mu - 1.0) < 1e-3; });
+  return std::count_if(list.begin(), list.end(), [&](const auto& mu) { return std::abs(mu - target) < located; });
 }
 
 /// Visits the upper multiplier of every complex pair except the pair nearest to `known`. Allocates nothing.
@@ -102,7 +103,7 @@ TestValue FoldTest::evaluate(const TestedPoint& point) const {
 SpecialPoint FoldTest::classify(const TestedPoint& point, bool) const {
   const DefiningSystem& system = point.condensed.system();
   const int s = touching_segment(point);
-  const bool is_fold = has_multiplier_one(point.multipliers);
+  const bool is_fold = multipliers_at(point.multipliers, 1.0) > 0;
   const bool of_orbits = type_ == PointType::fold && system.orbits() == 1 && !point.multipliers.are_eigenvalues;
   if (is_monitor_ && of_orbits && point.multipliers.valid && !is_fold)
     return {PointType::user, {UserPointKind::extremum}, stop_, "extremum of ICP(1) along the branch"};
@@ -146,6 +147,48 @@ bool PeriodDoublingTest::is_genuine(const TestedPoint& point) const { return is_
 
 SpecialPoint PeriodDoublingTest::classify(const TestedPoint& point, bool) const {
   return {PointType::period_doubling, {}, stop_, "period doubling", {}, normal_form_text(point, -1.0)};
+}
+
+std::string MultiplierPairTest::name() const { return fmt::format("a pair of multipliers {:+d}", target_); }
+
+TestValue MultiplierPairTest::evaluate(const TestedPoint& point) const {
+  if (!trusted(point.multipliers) || !point.multipliers.determined()) return TestValue::undefined();
+  // The largest two that are not in `done` yet, and so on.
+  double last = INFINITY, value = INFINITY, sign = 1.0;
+  int order = 0;
+  const auto beyond = [&](const std::complex<double>& mu) {
+    const bool is_real = std::abs(mu.imag()) <= complex_level * std::abs(mu);
+    return is_real && mu.real() * target_ > 0.0 ? mu.real() * target_ - 1.0 : -INFINITY;
+  };
+  while (true) {
+    double next = -INFINITY;
+    int equal = 0;
+    for (const auto& mu : point.multipliers.nontrivial())
+      if (const double x = beyond(mu); x < last) {
+        equal = x > next ? 1 : x == next ? equal + 1 : equal;
+        next = std::max(next, x);
+      }
+    if (next == -INFINITY) break;
+    for (; equal > 0; --equal)
+      if (++order % 2 == 0) {
+        value = std::min(value, std::abs(next));
+        sign = next > 0.0 ? -sign : sign;
+      }
+    last = next;
+  }
+  return order < 2 ? TestValue::undefined() : TestValue::of(sign * value, multiplier_accuracy(point.multipliers));
+}
+
+bool MultiplierPairTest::is_genuine(const TestedPoint& point) const {
+  return multipliers_at(point.multipliers, target_) >= 2;
+}
+
+SpecialPoint MultiplierPairTest::classify(const TestedPoint& point, bool) const {
+  return {target_ > 0 ? PointType::branch_point : PointType::period_doubling,
+          {},
+          stop_,
+          fmt::format("{}: {} multipliers go through {:+d} together", target_ > 0 ? "branch point" : "period doubling",
+                      multipliers_at(point.multipliers, target_), target_)};
 }
 
 std::optional<std::complex<double>> nearest_pair(const TestedPoint& point, std::optional<std::complex<double>> known) {

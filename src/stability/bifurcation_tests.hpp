@@ -79,6 +79,25 @@ class PeriodDoublingTest final : public TestFunction {
   bool stop_;
 };
 
+/// BP or PD where two multipliers go through +1 or -1 together, as a symmetry makes them do: then no determinant
+/// changes sign. With the real multipliers of the target's sign in order of size, x_1 >= x_2 >= ..., x_k = |mu_k| - 1:
+/// the least |x_2i|, negative when an odd number of the x_2i are positive. It vanishes with one multiplier, too, which
+/// is no such point. Undefined with fewer than two such multipliers.
+class MultiplierPairTest final : public TestFunction {
+ public:
+  MultiplierPairTest(int target, bool stop) : target_(target), stop_(stop) {}
+  std::string name() const override;
+  TestValue evaluate(const TestedPoint& point) const override;
+  Resolution resolution() const override { return Resolution::any; }
+  bool singular_at_zero() const override { return target_ > 0; }
+  bool is_genuine(const TestedPoint& point) const override;
+  SpecialPoint classify(const TestedPoint& point, bool rising) const override;
+
+ private:
+  int target_;
+  bool stop_;
+};
+
 /// TR: distance of the nearest complex pair from the unit circle, negative when an odd number of pairs is inside;
 /// undefined without a pair.
 class TorusTest final : public TestFunction {

@@ -116,7 +116,8 @@ struct TestValue {
 enum class Resolution {
   crossings,  ///< the polynomial through the last values has no two zeros between two points
   trend,      ///< each value is about what the last ones let expect, and they do not come near to zero in between
-  direction   ///< near a zero the branch hardly turns within a step, for another one may cross it there
+  direction,  ///< near a zero the branch hardly turns within a step, for another one may cross it there
+  any         ///< no step is shortened for it
 };
 
 /// What a point of the branch is; for a zero of a test function, what it found.
