@@ -552,10 +552,10 @@ SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const Path
   // No level of rounding: where a function is flat, it is small far from its zero.
   const LocatedZero zero = locate_zero_surely(at, bracket, settings_.tolerance, 0.0, settings_.max_evaluations);
   const bool is_jump = zero.status == ZeroSearch::jump;
-  const Search search = zero.converged()     ? Search::located
-                        : is_jump && genuine ? Search::jump
-                        : is_jump            ? Search::no_special_point
-                                             : Search::failed;
+  const Search search = zero.converged() || (is_jump && tests_[test]->is_switch()) ? Search::located
+                        : is_jump && genuine                                       ? Search::jump
+                        : is_jump                                                  ? Search::no_special_point
+                                                                                   : Search::failed;
   return {test, zero.ds, search};
 }
 

@@ -424,6 +424,11 @@ void HybridSimulation::integrate(SimulatedSegment& segment, double end_time) {
   end_by(segment, together);
 }
 
+double HybridSimulation::time_uncertainty(const SimulatedSegment& ended) const {
+  const EventAt at = event_at(system_, ended.index.event, ended.end.data(), par_.data());
+  return settings_.flow.relative_tolerance * at.scale(ended.end.data(), sizes()) / std::abs(ended.event_velocity);
+}
+
 void HybridSimulation::end_by(SimulatedSegment& segment, const std::vector<int>& together) {
   // The first in the mode's order has priority.
   for (const IndexVector& index : mode_.index_vectors) {

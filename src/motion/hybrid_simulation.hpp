@@ -216,6 +216,9 @@ class HybridSimulation {
   const Eigen::VectorXd& state() const { return x_; }
   /// Of the states: the largest |x_i| so far, and what sizes_at() says of the start.
   const Eigen::VectorXd& sizes() const { return settings_.flow.sizes; }
+  /// What the tolerance of integration makes of the time of the event that ended a segment: it moves the event
+  /// function by so much of its scale, and the flow is as fast as h_x f.
+  double time_uncertainty(const SimulatedSegment& ended) const;
   /// The index vector that ended the last segment; (0,0,0) before any.
   const IndexVector& last_event() const { return last_; }
   /// Of the last segment; before any, that of the start.

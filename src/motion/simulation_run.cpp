@@ -1,5 +1,6 @@
 #include "motion/simulation_run.hpp"
 
+#include <array>
 #include <limits>
 
 #include "linear/dense_matrix.hpp"
@@ -17,8 +18,8 @@ constexpr int too_many_zeros = 50;
 
 }  // namespace
 
-void ChatteringDetector::add(const IndexVector& index, double duration) {
-  segments_.push_back({index, duration});
+void ChatteringDetector::add(const IndexVector& index, double duration, double uncertainty) {
+  segments_.push_back({index, duration, uncertainty});
   if (segments_.size() > most_kept) segments_.pop_front();
   zeros_ = duration > 0.0 ? 0 : zeros_ + 1;
   const std::size_t last = segments_.size() - 1;
@@ -29,7 +30,7 @@ void ChatteringDetector::add(const IndexVector& index, double duration) {
 }
 
 std::optional<ChatteringDetector::Accumulation> ChatteringDetector::accumulation() const {
-  if (zeros_ >= too_many_zeros) return Accumulation{0.0, 0.0, 1};
+  if (zeros_ >= too_many_zeros) return Accumulation{};
   for (std::size_t q = 1; q <= longest_pattern; ++q)
     if (const auto found = accumulation(q)) return found;
   return std::nullopt;
@@ -53,9 +54,37 @@ std::optional<ChatteringDetector::Accumulation> ChatteringDetector::accumulation
   }
   const double ratio = sum / static_cast<double>(ratios);
   if (largest - least > agreement * (1.0 - ratio)) return std::nullopt;
-  double turn = 0.0;
-  for (std::size_t k = last + 1 - q; k <= last; ++k) turn += segments_[k].duration;
-  return Accumulation{turn * ratio / (1.0 - ratio), ratio, static_cast<int>(q)};
+  return limit(q, turns, ratio);
+}
+
+ChatteringDetector::Accumulation ChatteringDetector::limit(std::size_t q, std::size_t turns, double ratio) const {
+  constexpr std::size_t most_nodes = 8;
+  constexpr double safety = 5.0;  // of the last increment, which has been 2 to 5 times too small
+  const std::size_t nodes = std::min(turns, most_nodes);
+  std::array<double, most_nodes> lengths{}, times{};
+  double time = 0.0, known_to = 0.0;
+  std::size_t k = segments_.size();
+  for (std::size_t j = 0; j < nodes; ++j) {
+    times[j] = time;
+    for (std::size_t i = 0; i < q; ++i) {
+      --k;
+      lengths[j] += segments_[k].duration;
+      known_to = std::max(known_to, segments_[k].uncertainty);
+    }
+    time -= lengths[j];
+  }
+  double remaining = lengths[0] * ratio / (1.0 - ratio), error = remaining;
+  double last = times[0];
+  for (std::size_t order = 1; order < nodes; ++order) {
+    for (std::size_t i = 0; i + order < nodes; ++i)
+      times[i] = (lengths[i] * times[i + 1] - lengths[i + order] * times[i]) / (lengths[i] - lengths[i + order]);
+    const double change = std::abs(times[0] - last);
+    last = times[0];
+    if (order > 1 && !(change < error)) break;  // what is left is rounding
+    remaining = times[0];
+    error = change;
+  }
+  return {remaining, ratio, static_cast<int>(q), safety * error + known_to / (1.0 - ratio)};
 }
 
 namespace {
@@ -252,7 +281,7 @@ SimulationResult run_simulation(HybridSimulation& simulation, const SimulationPl
     if (result.last.ended_by != SegmentEnd::event) break;
     ++result.events;
     if (is_transient) ++result.dropped;
-    chattering.add(result.last.index, result.last.duration);
+    chattering.add(result.last.index, result.last.duration, simulation.time_uncertainty(result.last));
     result.accumulation = chattering.accumulation();
     decay.add(result.last.index, result.last.event_velocity);
     result.dies_out = until_it_repeats && decay.dies_out();

@@ -21,18 +21,21 @@ namespace tchat {
 // Accumulation of events (chattering, Zeno): durations that shrink geometrically towards zero, so that infinitely many
 // events happen in finite time.
 //
-// With a pattern of q events, T_k / T_{k-q} -> rho < 1; what remains is (T_{k-q+1} + ... + T_k) rho / (1 - rho).
+// With a pattern of q events, T_k / T_{k-q} -> rho < 1. The last patterns last w_0 > ... > w_J, of which the j-th ends
+// r_j after the limit's remaining time (r_J = 0 for the last one): both are smooth functions of the velocity, and so is
+// one of the other. What remains is r at w = 0, by Neville's scheme.
 
 class ChatteringDetector {
  public:
   struct Accumulation {
-    double remaining = 0.0;  ///< time from the last event to the limit
-    double ratio = 0.0;      ///< rho
-    int pattern = 1;         ///< q
+    double remaining = 0.0;    ///< time from the last event to the limit
+    double ratio = 0.0;        ///< rho
+    int pattern = 1;           ///< q
+    double uncertainty = 0.0;  ///< of the limit's time, by extrapolation and by what is known of the durations
   };
 
-  /// The next segment: what ended it and how long it lasted.
-  void add(const IndexVector& index, double duration);
+  /// The next segment: what ended it, how long it lasted, and how well that is known.
+  void add(const IndexVector& index, double duration, double uncertainty = 0.0);
   /// When durations have shrunk by a factor of 1000 and the last ratios agree; at once after many zero durations.
   std::optional<Accumulation> accumulation() const;
 
@@ -41,9 +44,10 @@ class ChatteringDetector {
   static constexpr std::size_t most_kept = 100000;  // a simulation may be endless
   struct Segment {
     IndexVector index;
-    double duration;
+    double duration, uncertainty;
   };
   std::optional<Accumulation> accumulation(std::size_t pattern) const;
+  Accumulation limit(std::size_t pattern, std::size_t turns, double ratio) const;
 
   std::deque<Segment> segments_;                     // the last `most_kept`
   std::size_t shrinking_[longest_pattern + 1] = {};  // how many last segments were shorter than those q before

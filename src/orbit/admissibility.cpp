@@ -110,19 +110,31 @@ bool may_follow(const HybridSystem& system, const IndexVector& from, const Index
   return !has_other_jump || is_identity_jump(system, to);
 }
 
+/// Does the problem say what follows the end of segment s, where that is not at grazing?
+bool has_rule(const HybridSystem& system, const Signature& signature, const Orbit& x, int s) {
+  const IndexVector& from = signature[static_cast<std::size_t>(s)];
+  const IndexVector& to = signature[(static_cast<std::size_t>(s) + 1) % signature.size()];
+  const bool is_last = s + 1 == x.shape.segments && system.boundary_conditions() > 0;
+  if (!system.has_successors() || is_last || from.event == no_function || to.event == no_function) return false;
+  if (lasts_no_time(x, s) || lasts_no_time(x, (s + 1) % x.shape.segments)) return false;
+  const Crossing end = crossing_of_event(system, from.event, from.field, x.end(s), x.par.data());
+  return std::abs(end.transversality()) > tangent_contact;
+}
+
 }  // namespace
+
+bool follows_rules_there(const HybridSystem& system, const Signature& signature, const Orbit& x, int s) {
+  return !has_rule(system, signature, x, s) ||
+         may_follow(system, signature[static_cast<std::size_t>(s)],
+                    signature[(static_cast<std::size_t>(s) + 1) % signature.size()], x.end(s), x.par.data());
+}
 
 bool follows_rules(const HybridSystem& system, const Signature& signature, const Orbit& x, int s) {
   constexpr double located = 1e-6;
-  const std::size_t m = signature.size();
+  if (follows_rules_there(system, signature, x, s)) return true;
   const IndexVector& from = signature[static_cast<std::size_t>(s)];
-  const IndexVector& to = signature[(static_cast<std::size_t>(s) + 1) % m];
-  const bool is_last = s + 1 == x.shape.segments && system.boundary_conditions() > 0;
-  if (!system.has_successors() || is_last || from.event == no_function || to.event == no_function) return true;
-  if (lasts_no_time(x, s) || lasts_no_time(x, (s + 1) % x.shape.segments)) return true;
+  const IndexVector& to = signature[(static_cast<std::size_t>(s) + 1) % signature.size()];
   const double* par = x.par.data();
-  const Crossing end = crossing_of_event(system, from.event, from.field, x.end(s), par);
-  if (std::abs(end.transversality()) <= tangent_contact || may_follow(system, from, to, x.end(s), par)) return true;
   Eigen::VectorXd beside = Eigen::Map<const Eigen::VectorXd>(x.end(s), x.shape.dimension);
   for (double& state : beside)
     for (const double sign : {1.0, -1.0}) {

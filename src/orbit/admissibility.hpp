@@ -86,6 +86,8 @@ std::string describe(const Violation& violation, const HybridSystem& system);
 /// it that are the same up to the accuracy of a located point, have another jump for its event in its field. All else
 /// is the user's choice: other fields, events that cut the orbit, segments of no duration, contacts.
 bool follows_rules(const HybridSystem& system, const Signature& signature, const Orbit& x, int s);
+/// The same of the state at its end alone.
+bool follows_rules_there(const HybridSystem& system, const Signature& signature, const Orbit& x, int s);
 
 // What a segment that slides, or one that crosses a surface on which orbits may slide, must do at its start.
 

@@ -332,6 +332,9 @@ std::string next_command(const NextStart& start, const RunSettings& settings, co
     return fmt::format("tchat resegment {} {} --to {} -o {} && tchat run {} -c {} -s {} -o {}_branch", solutions,
                        start.label, target, name, problem_arguments(problem), name, name, name);
   }
+  if (start.kind.kind == UserPointKind::rule)
+    return fmt::format("tchat simulate {} -s {} IRS={} --dat {}", problem_arguments(problem), quoted_for_shell(output),
+                       start.label, name);
   const bool is_extremum = start.kind.kind == UserPointKind::extremum;
   if ((start.kind.kind != UserPointKind::none && !is_extremum) || !settings.held.empty()) return "";
   const bool has_torus = start.type == static_cast<int>(PointType::torus);

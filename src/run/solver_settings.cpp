@@ -53,6 +53,12 @@ void add_contacts(TestList& tests, const DefiningSystem& system, const RunSettin
         tests.push_back(std::make_unique<ContactTest>(system, s, event, settings.stop_at_grazing));
 }
 
+/// None where the problem does not say what follows.
+void add_rules(TestList& tests, const DefiningSystem& system, const RunSettings& settings) {
+  for (int s = 0; s < system.segments() && system.system().has_successors(); ++s)
+    tests.push_back(std::make_unique<RuleTest>(system, s, settings.stop_at_grazing));
+}
+
 /// Where a segment of one side of a sliding mode is followed by one of the other.
 void add_sliding_onsets(TestList& tests, const DefiningSystem& system, const RunSettings& settings) {
   const Signature& signature = system.signature();
@@ -116,6 +122,7 @@ TestList contact_tests(const DefiningSystem& system, const RunSettings& settings
   add_contacts(tests, system, settings);
   add_section_tangencies(tests, system, settings, -1);
   add_sliding_onsets(tests, system, settings);
+  add_rules(tests, system, settings);
   return tests;
 }
 

@@ -41,6 +41,10 @@ constexpr auto table = std::to_array<PointTypeFacts>({
      "grazing: the velocity of an impact passes zero, or a section becomes tangent; the branch ends there unless "
      "GRSTOP=0",
      PointSymbol::circle, false, true, false, false},
+    {"GR", -4, UserPointKind::rule,
+     "the rules of the model change: beyond it another jump follows the end of a segment; the branch ends there unless "
+     "GRSTOP=0",
+     PointSymbol::circle, false, true, false, false},
     {"BE", -4, UserPointKind::boundary_equilibrium,
      "boundary equilibrium: a monitored event function is zero at an equilibrium; the branch ends there unless "
      "GRSTOP=0 or the function rises",
@@ -256,6 +260,9 @@ std::string description(const UserPointKind& kind, const std::string& parameter)
       return fmt::format("boundary equilibrium, event function {}", kind.index);
     case UserPointKind::extremum:
       return "extremum of ICP(1)";
+    case UserPointKind::rule:
+      return fmt::format("the rules of the model change at the end of segment {}, event function {}", kind.segment,
+                         kind.index);
     case UserPointKind::other_type:
       return type_name(kind.index);
     default:

@@ -153,16 +153,27 @@ std::string multiplier_text(const std::complex<double>& mu) {
   return fmt::format("{:.10g} {} {:.10g} i", mu.real(), mu.imag() < 0.0 ? '-' : '+', std::abs(mu.imag()));
 }
 
+/// With the digits that its uncertainty leaves.
+std::string known_digits(double value, double uncertainty) {
+  const double share = uncertainty > 0.0 ? std::abs(value) / uncertainty : INFINITY;
+  const double digits =
+      std::isfinite(share) ? std::clamp(std::ceil(std::log10(std::max(share, 1.0))) + 1.0, 1.0, 12.0) : 12.0;
+  return fmt::format("{:.{}g}", value, static_cast<int>(digits));
+}
+
 std::string why_it_ended(const HybridSystem& system, const SimulationResult& result) {
   const SimulatedSegment& last = result.last;
   if (result.accumulation) {
     const ChatteringDetector::Accumulation& limit = *result.accumulation;
     return fmt::format(
         "Events accumulate (chattering): the last {} are of pattern length {}, each duration {:.6g} times that of one "
-        "pattern before.\nThe limit is at t = {:.12g}, {:.3g} after the last event, at about x = {}. The simulation "
+        "pattern before.\nThe limit is at t = {}{}, {:.3g} after the last event, at about x = {}. The "
+        "simulation "
         "ends there:\nwhat follows (sticking, rolling) needs a mode of its own in the problem.\n",
-        result.events > 20 ? 20 : result.events, limit.pattern, limit.ratio, last.end_time() + limit.remaining,
-        limit.remaining, state_text(last.after));
+        result.events > 20 ? 20 : result.events, limit.pattern, limit.ratio,
+        known_digits(last.end_time() + limit.remaining, limit.uncertainty),
+        limit.uncertainty > 0.0 ? fmt::format(" +- {:.1e}", limit.uncertainty) : "", limit.remaining,
+        state_text(last.after));
   }
   if (result.dies_out)
     return fmt::format(

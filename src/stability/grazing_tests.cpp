@@ -96,6 +96,29 @@ SpecialPoint ContactTest::classify(const TestedPoint& point, bool rising) const 
                       contact->tau, state_text(system_.system(), point.orbit, contact->state.data()))};
 }
 
+std::string RuleTest::name() const { return fmt::format("what follows segment {}", segment_ + 1); }
+
+TestValue RuleTest::evaluate(const TestedPoint& point) const {
+  const bool follows = follows_rules_there(system_.system(), system_.signature(), point.orbit, segment_);
+  return TestValue::of(follows ? 1.0 : -1.0, 0.0);
+}
+
+SpecialPoint RuleTest::classify(const TestedPoint& point, bool rising) const {
+  const HybridSystem& system = system_.system();
+  const IndexVector& from = system_.signature()[static_cast<std::size_t>(segment_)];
+  const int next = (segment_ + 1) % system_.segments();
+  const IndexVector& to = system_.signature()[static_cast<std::size_t>(next)];
+  return {
+      PointType::user,
+      {UserPointKind::rule, segment_ + 1, from.event, 1.0},
+      stop_ && !rising,
+      fmt::format("the rules of the model change at the end of segment {} (event {}, {}): on one side of this point "
+                  "jump {} ({}) ends segment {}, on the other side it is another one, {}",
+                  segment_ + 1, from.event, system.function_name(FunctionKind::event, from.event), to.jump,
+                  system.function_name(FunctionKind::jump, to.jump), next + 1,
+                  state_text(system, point.orbit, point.orbit.end(segment_)))};
+}
+
 namespace {
 
 using Eigen::MatrixXd;

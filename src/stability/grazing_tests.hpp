@@ -37,6 +37,25 @@ class ContactTest final : public TestFunction {
   bool stop_;
 };
 
+// Where the problem's rules (lines `after EVENT if CONDITION` of formulas) change what follows the end of a segment: 1
+// where the next segment of the signature may follow, -1 where it may not (orbit/admissibility.hpp).
+
+class RuleTest final : public TestFunction {
+ public:
+  /// `segment` counts from 0. Beyond a falling sign the orbit violates the model: `stop` ends the branch there.
+  RuleTest(const DefiningSystem& system, int segment, bool stop) : system_(system), segment_(segment), stop_(stop) {}
+  std::string name() const override;
+  TestValue evaluate(const TestedPoint& point) const override;
+  Resolution resolution() const override { return Resolution::any; }
+  bool is_switch() const override { return true; }
+  SpecialPoint classify(const TestedPoint& point, bool rising) const override;
+
+ private:
+  const DefiningSystem& system_;
+  int segment_;
+  bool stop_;
+};
+
 // What contact of low velocity does to first order, and how it comes back (2.111-2.112, 4.22, corrected).
 //
 // With x* a grazing point of event surface D, h_P = h_{D,x} f, a* = h_{P,x} f > 0 and A the derivative of the return

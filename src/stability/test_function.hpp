@@ -143,6 +143,8 @@ class TestFunction {
   virtual std::string objection(const TestedPoint&) const { return ""; }
   /// True when Newton's matrix is singular at the zeros, which are then located from both sides.
   virtual bool singular_at_zero() const { return false; }
+  /// True when the value is a sign alone: what is looked for is where it jumps.
+  virtual bool is_switch() const { return false; }
   /// True when a zero is told of, but neither located nor labelled: the equations are singular there.
   virtual bool is_only_reported() const { return false; }
   /// Why the function is zero at every point of a branch, where that is known; `point` is one of them.

@@ -299,7 +299,7 @@ z' = -z + 0.3*x^2 + b1
   CHECK(value_of(back, "LP", "b1") == Approx(-0.0625).epsilon(1e-8));
 }
 
-TEST_CASE("an orbit whose impact the rules of the model would not have is inadmissible") {
+TEST_CASE("where the rules of the model have another impact a branch ends, and goes on inadmissible if it must") {
   // A relief valve that stays closed once it hits its seat slowly: |y2| < eps.
   const Workspace workspace;
   workspace.write("closing.tch", R"(par q=0.1, kappa=1.25, beta=20, delta=10, r=0.8, eps=0.05
@@ -317,8 +317,16 @@ after any: flow until seat -> impact
 )");
   // Eight impacts at q = 0.05, as simulated; at q = 0.1 the seventh is faster than eps.
   workspace.succeed(Words{"simulate", "closing", "PAR(q)=0.05", "--dat", "c1", "-q"});
-  const std::string out =
-      workspace.succeed("run closing -c c1 -d c1 -o low DS=0.005 DSMAX=0.02 RL0=0.01 RL1=0.6 NMX=200 UZR={q:0.1}").out;
+  const std::string run = "run closing -c c1 -d c1 DS=0.005 DSMAX=0.02 RL0=0.01 RL1=0.6 NMX=200 UZR={q:0.1} ";
+  const std::string ends = workspace.succeed(run + "-o first").out;
+  INFO(ends);
+  // The seventh impact has the velocity -eps there, to EPSS.
+  CHECK(value_of(ends, "GR", "q") < 0.1);
+  CHECK(contains(ends, "y1 = 0, y2 = -0.0"));
+  const std::size_t at = ends.find("y1 = 0, y2 = ");
+  CHECK(std::stod(ends.substr(at + 13)) == Approx(-0.05).epsilon(1e-6));
+  workspace.succeed("simulate closing -s first IRS=GR1 --dat on -q");
+  const std::string out = workspace.succeed(run + "-o low GRSTOP=0").out;
   INFO(out);
   CHECK(contains(out, "inadmissible"));
   CHECK(contains(workspace.read("d.low"), "the problem's rules lead to another segment"));

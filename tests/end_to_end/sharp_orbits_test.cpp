@@ -1,7 +1,9 @@
 // Orbits with the shortest and the longest parts: spikes for which times have hardly any digits, two events at one
 // instant, a period that grows without bound where equilibria are born on the orbit.
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include "end_to_end/workspace.hpp"
 
@@ -135,4 +137,30 @@ TEST_CASE("Two multipliers go through +1 together, as the symmetry of a ring of 
   INFO(branch);
   CHECK(first_period(workspace.read("p.c")) != Approx(2.0 * std::numbers::pi / (3.0 + 1.25)).epsilon(1e-4));
   CHECK(workspace.succeed("verify q.c").out.find("agree") != std::string::npos);
+}
+
+TEST_CASE("Limit of chattering on a vibrating table: no more digits than it has") {
+  // x'' = -1 on a table 1.1 sin(t), r = 1/2. By iteration of the flights in 40 digits the limit is 5.311288054231.
+  const Workspace workspace;
+  workspace.write("table.tch", R"(par Gamma=1.1, r=0.5
+init x=0.1, v=0, s=0
+x' = v
+v' = -1
+s' = 1
+event floor = x - Gamma*sin(s)
+jump impact: v -> -r*v + (1 + r)*Gamma*cos(s)
+after any: floor -> impact
+)");
+  for (const auto* const tolerance : {"1e-8", "1e-10", "1e-13"}) {
+    const std::string out = workspace.succeed(std::string("simulate table --tolerance ") + tolerance).out;
+    INFO(out);
+    const std::size_t at = out.find("limit is at t = ");
+    REQUIRE(at != std::string::npos);
+    std::istringstream words(out.substr(at + 16));
+    double limit = 0.0, uncertainty = 0.0;
+    std::string sign;
+    words >> limit >> sign >> uncertainty;
+    CHECK(std::abs(limit - 5.311288054231) <= uncertainty);
+    CHECK(uncertainty < 1e5 * std::stod(tolerance));
+  }
 }
