@@ -226,7 +226,7 @@ std::optional<Equilibrium> near_equilibrium(const DefiningSystem& system, const 
   const SlowPoint start = slowest_point(system, x, ranges);
   if (start.state.size() == 0) return std::nullopt;
   const std::optional<NearbyEquilibrium> found =
-      find_equilibrium(system.system(), start.field, start.state, x.par.data(), {});
+      find_equilibrium(system.system(), start.field, start.state, x.par.data(), {}, ranges);
   if (!found) return std::nullopt;
   const double distance = scaled_size(found->state - start.state, ranges);
   if (!(distance <= at_rest_nearby)) return std::nullopt;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/levels.hpp"
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
 #include "model/scales.hpp"
@@ -18,9 +19,9 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double waits = 10.0;       // for the event of a segment, as a multiple of the simulated turn
-constexpr double same_orbit = 0.1;   // largest correction, as a share of the orbit's range
-constexpr double same_state = 1e-7;  // of points of the refined orbit, likewise
+constexpr double waits = 10.0;                   // for the event of a segment, as a multiple of the simulated turn
+constexpr double same_orbit = 0.1;               // largest correction, as a share of the orbit's range
+constexpr double same_state = level::tolerance;  // of points of the refined orbit, likewise
 
 bool ends_in_section(const HybridSystem& system, const std::vector<SimulatedSegment>& turn, std::size_t s) {
   return is_identity_jump(system, turn[s].index) && turn[(s + 1) % turn.size()].mode.field() == turn[s].mode.field();
@@ -51,14 +52,13 @@ PeriodicOrbit shoot_finely(const HybridSystem& system, FoundOrbit& found, const 
   options.flow.sizes = found.sizes;
   options.flow.max_duration = found.longest_wait;
   const PeriodicOrbit orbit = shoot(system, found.signature, guess, par, options);
-  found.uncertainty = 1e-9;
+  found.uncertainty = level::orbit;
   if (orbit.converged) return orbit;
   // Large derivatives leave fewer digits.
-  options.flow.relative_tolerance = 1e-12;
-  options.flow.absolute_tolerance = 1e-13;
-  options.tolerance = 1e-9;
+  options.flow.set(level::relaxed_flow);
+  options.tolerance = level::orbit;
   const PeriodicOrbit roughly = shoot(system, found.signature, guess, par, options);
-  found.uncertainty = 1e-6;
+  found.uncertainty = level::located;
   if (roughly.converged) return roughly;
   // On a stiff problem the steps of a method for others are too many.
   options.flow.method = IntegrationMethod::bdf;
@@ -211,7 +211,7 @@ FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, co
 
 namespace {
 
-constexpr double wanted_error = 1e-7;
+constexpr double wanted_error = level::tolerance;
 constexpr int most_intervals = 1000;
 constexpr int first_samples = 1600;
 
@@ -224,8 +224,7 @@ MatrixXd sample_segment(const HybridSystem& system, int field, const MapSegment&
   options.variational = false;
   options.method = orbit.method;
   options.sizes = orbit.sizes;
-  options.relative_tolerance = 1e-13;
-  options.absolute_tolerance = 1e-14;
+  options.set(level::reference_flow);
   options.max_steps = 10000000;
   CvodesFlow flow(system, field, segment.start, par, options);
   std::size_t next = 1;

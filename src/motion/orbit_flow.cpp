@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
@@ -114,7 +115,7 @@ struct EndPoint {
   }
 
   /// False at grazing to rounding, and where a function cannot be evaluated.
-  bool is_transversal() const { return std::abs(velocity) > 1e-14 * hx.cwiseAbs().dot(f.cwiseAbs()); }
+  bool is_transversal() const { return std::abs(velocity) > level::rounding * hx.cwiseAbs().dot(f.cwiseAbs()); }
 };
 
 VectorXcd sorted_eigenvalues(const MatrixXd& m) {

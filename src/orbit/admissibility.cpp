@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 
+#include "base/levels.hpp"
 #include "linear/array_kernel.hpp"
 #include "linear/memory.hpp"
 #include "model/events.hpp"
@@ -35,7 +36,7 @@ Crossing crossing_of_event(const HybridSystem& system, int event, int field, con
 namespace {
 
 /// Between nodes h counts as negative beyond this share of its size, which rounding and a located point do not reach.
-constexpr double surely_negative = 1e-6;
+constexpr double surely_negative = level::located;
 
 }  // namespace
 
@@ -113,7 +114,6 @@ bool may_follow(const HybridSystem& system, const IndexVector& from, const Index
 }  // namespace
 
 bool follows_rules(const HybridSystem& system, const Signature& signature, const Orbit& x, int s) {
-  constexpr double located = 1e-6;
   const std::size_t m = signature.size();
   const IndexVector& from = signature[static_cast<std::size_t>(s)];
   const IndexVector& to = signature[(static_cast<std::size_t>(s) + 1) % m];
@@ -127,7 +127,7 @@ bool follows_rules(const HybridSystem& system, const Signature& signature, const
   for (double& state : beside)
     for (const double sign : {1.0, -1.0}) {
       const double own = state;
-      state += sign * located * x.states.row((&state - beside.data())).cwiseAbs().maxCoeff();
+      state += sign * level::located * x.states.row((&state - beside.data())).cwiseAbs().maxCoeff();
       const bool may = may_follow(system, from, to, beside.data(), par);
       state = own;
       if (may) return true;
@@ -172,7 +172,7 @@ std::string describe(const Violation& violation, const HybridSystem& system) {
 namespace {
 
 /// Whether an orbit meets the surface at a start, or has another reason to change the field there.
-constexpr double meets_surface = 1e-6;
+constexpr double meets_surface = level::located;
 
 }  // namespace
 
