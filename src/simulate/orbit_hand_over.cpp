@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "files/dat_file.hpp"
 #include "model/events.hpp"
 #include "model/parameter_vector.hpp"
@@ -70,11 +71,11 @@ RecordedPeriod recorded_period(const std::vector<SimulatedSegment>& segments, st
 namespace {
 
 constexpr double no_bound = 1e300;
-constexpr double surface = 1e-9;  // h below minus this, times its scale, is negative
+constexpr double surface = level::orbit;  // h below minus this, times its scale, is negative
 
 /// The values of an event function along a segment.
 struct EventValues {
-  double least = 0.0, scale = 1.0;
+  double least = 0.0, scale = 0.0;
 
   EventValues(const HybridSystem& system, int event, const Eigen::MatrixXd& states, const Eigen::VectorXd& par) {
     least = no_bound;
@@ -84,6 +85,9 @@ struct EventValues {
       scale = std::max(scale, std::abs(h));
       if (!(h >= least)) least = h;  // NaN is kept
     }
+    const Eigen::VectorXd x = states.col(0);
+    const EventAt at = event_at(system, event, x.data(), par.data());
+    scale = std::max(scale, at.scale(x.data(), states.cwiseAbs().rowwise().maxCoeff()));
   }
   bool is_negative() const { return !(least >= -surface * scale); }
 };
@@ -212,9 +216,9 @@ RunSettings default_orbit_settings(const RunSettings& given) {
   const auto prefer = [&](auto member, auto value) {
     if (given.*member == plain.*member) settings.*member = value;
   };
-  prefer(&RunSettings::tolerance_parameters, 1e-10);
-  prefer(&RunSettings::tolerance_states, 1e-10);
-  prefer(&RunSettings::tolerance_special, 1e-9);
+  prefer(&RunSettings::tolerance_parameters, level::converged);
+  prefer(&RunSettings::tolerance_states, level::converged);
+  prefer(&RunSettings::tolerance_special, level::orbit);
   prefer(&RunSettings::derivative_order, 2);
   return settings;
 }
