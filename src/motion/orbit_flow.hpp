@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "base/levels.hpp"
 #include "model/hybrid_system.hpp"
 #include "model/index_vector.hpp"
 #include "motion/watched_flow.hpp"
@@ -92,8 +91,7 @@ ReturnMap return_map(const HybridSystem& system, const Signature& signature, con
 struct ShootingOptions {
   FlowOptions flow;
   int max_iterations = 20;
-  /// On |Newton step| / (1 + |x|), of the last step taken, in sizes of states if known.
-  double tolerance = level::converged;
+  double tolerance = 1e-11;  ///< on |Newton step| / (1 + |x|), of the last step taken, in sizes of states if known
   /// States that nothing depends on and that need not return (a position on an endless floor), from 0: kept at their
   /// start, and without an equation.
   std::vector<Eigen::Index> ignorable;
