@@ -244,7 +244,7 @@ constexpr double same = 10.0;
 /// Measures of one orbit with different phases differ by the error of their quadrature.
 constexpr double same_measures = level::located;
 /// A step along the tangent, to see how measures change.
-constexpr double probe = level::surely;
+constexpr double probe = level::visible;
 
 /// Is `ratio` on [0, 1] but for the margin?
 bool is_on_step(double ratio) { return ratio >= -margin && ratio <= 1.0 + margin; }

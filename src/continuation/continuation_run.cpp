@@ -30,7 +30,7 @@ constexpr double sudden = 1e3;
 /// known to EPSS, and where Newton's matrix is singular anyway.
 constexpr double shrunk_where_located = 1e-3;
 /// So near to a point a branch is followed that leads through it: Newton's matrix is as near to a singular one.
-constexpr double shrunk_enough = level::surely;
+constexpr double shrunk_enough = level::visible;
 /// The deviations of orbits before and behind a point are opposite but for what a step changes.
 constexpr double opposite = -0.8;
 constexpr double shrunk = level::located;
@@ -59,7 +59,7 @@ std::vector<std::unique_ptr<TestFunction>> with_bounds(std::vector<std::unique_p
 /// Do the multipliers alone show a fold? In a canard explosion the parameter hardly moves. Near a Hopf bifurcation one
 /// is near 1 on all orbits.
 bool comes_to_multiplier_one(const PointData& before, const PointData& data) {
-  constexpr double accurate = 1e-3, near = 1e-2, away = level::surely;
+  constexpr double accurate = 1e-3, near = 1e-2, away = level::visible;
   const FloquetMultipliers& multipliers = data.multipliers;
   return multiplier_distance(before.multipliers, 1.0) > away && multipliers.determined() &&
          !multipliers.are_eigenvalues && multiplier_accuracy(multipliers) <= accurate &&

@@ -182,7 +182,7 @@ OrbitTrace section_trace(const LabelledSolution& solution, const std::string& na
 
 namespace {
 
-constexpr double critical_width_of_orbits = level::surely;
+constexpr double critical_width_of_orbits = level::visible;
 
 std::map<int, LineKind> kinds_in_diagnostics(const std::string& path) {
   std::map<int, LineKind> kinds;

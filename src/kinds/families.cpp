@@ -67,7 +67,7 @@ namespace {
 constexpr double vanishing_period = level::same;
 /// An orbit whose states all move by a smaller part of what they did at the start, or by no more than Newton's method
 /// ends with, is an equilibrium.
-constexpr double vanishing_range = level::surely;
+constexpr double vanishing_range = level::visible;
 constexpr double no_range = level::tolerance;
 
 /// The angular frequency with which an orbit that has shrunk to a point goes around it, if the flow is smooth there and

@@ -138,7 +138,7 @@ struct Return {
 Return repetition(const MatrixXd& points, const std::vector<Index>& angles) {
   constexpr Index most = 64;
   // Simulations are known to so much; a torus comes back so close after so few points in a resonance alone.
-  constexpr double rounding = level::tolerance, near = level::surely, settling = 1e-3;
+  constexpr double rounding = level::tolerance, near = level::visible, settling = 1e-3;
   const Index quarter = points.cols() / 4;
   const VectorXd size = sizes_from_ranges(points.cwiseAbs().rowwise().maxCoeff());
   for (Index q = 1; q <= std::min(most, quarter); ++q) {
@@ -267,7 +267,7 @@ CurveFit best_fit(const MatrixXd& points, const PointSequence& sequence, const V
   for (int harmonics = 8; harmonics <= most; harmonics *= 2) {
     const CurveFit more(points, sequence, scale, best.rotation, harmonics);
     if (!(more.total < best.total)) break;
-    const bool is_worth_it = more.total < 0.25 * best.total || more.largest > level::surely;
+    const bool is_worth_it = more.total < 0.25 * best.total || more.largest > level::visible;
     best = more;
     if (!is_worth_it) break;
   }

@@ -208,7 +208,7 @@ namespace {
 constexpr double bars_of_zero = 3.0;
 // Against the largest exponent or the frequency of events: chaos may be weak, and means of regular motion converge
 // fast.
-constexpr double small_bar = level::surely;
+constexpr double small_bar = level::visible;
 
 }  // namespace
 

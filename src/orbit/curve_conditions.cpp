@@ -437,7 +437,7 @@ void CriticalBranchPoint::choose_next(CondensedSystem& condensed) {
 }
 
 std::string CriticalBranchPoint::beyond_end() const {
-  constexpr double zero = level::surely;  // far more than the asymmetry of a mesh leaves of b
+  constexpr double zero = level::visible;  // far more than the asymmetry of a mesh leaves of b
   if (!(std::abs(b_) > zero * size_)) return {};
   return fmt::format(
       "the branch points are branch points no longer (the unfolding parameter is {:.2e}, not 0): what makes the "

@@ -213,7 +213,7 @@ std::string HopfPair::beyond_end() const {
 
 /// At a double eigenvalue 0, which rounding may have made two real ones: the plane that f_x f_x maps to nearly nothing.
 bool HopfPair::begin_at_double_zero() {
-  const auto beyond = [size = level::surely * jacobian_.norm()](const auto& value) { return std::abs(value) > size; };
+  const auto beyond = [size = level::visible * jacobian_.norm()](const auto& value) { return std::abs(value) > size; };
   const Eigen::VectorXcd values = eigenvalues(jacobian_);
   if (values.size() - std::count_if(values.begin(), values.end(), beyond) != 2) return false;
   const Eigen::MatrixXd square = jacobian_ * jacobian_;

@@ -150,7 +150,7 @@ void ReducedGradient::add_monitor_gradient(const Orbit& x, const OrbitVector& al
 
 /// In units of the parameters in which the diagonal is 1, for signs are the same in all units.
 ReducedGradient::Nature ReducedGradient::nature(const Orbit& x, const std::vector<int>& parameters) {
-  constexpr double least = level::surely;  // far more than differences and the distance to the point leave
+  constexpr double least = level::visible;  // far more than differences and the distance to the point leave
   const auto count = std::ssize(parameters);
   Eigen::MatrixXd second(count, count), terms(count, count);
   OrbitVector row(x.shape, system_.free_count());

@@ -181,7 +181,7 @@ inline bool lasts_no_time(const Orbit& x, int s) { return lasts_no_time(x, s, x.
 
 /// A contact segment (model/events.hpp) that shrinks to nothing passes zero in proportion to the arclength,
 /// so that a located point knows its duration to EPSS, which may be coarse. At a tangency a shorter one is zero.
-inline constexpr double no_contact = level::surely;
+inline constexpr double no_contact = level::visible;
 
 inline bool contact_lasts_no_time(const Orbit& x, int s) {
   return std::abs(x.duration(s)) <= no_contact * std::abs(x.period());

@@ -98,7 +98,7 @@ double QuantityFunction::first(const double* x, const double* par, double* by_st
 /// A function may change on the scale of a small variable itself: where formulas of two orders differ much, with a step
 /// that is small against it, unless rounding is more than that then.
 double QuantityFunction::by_difference(double& variable, const double* x, const double* par) const {
-  constexpr double much = level::surely;  // the error of the better one is about the square
+  constexpr double much = level::visible;  // the error of the better one is about the square
   constexpr double rounding = std::numeric_limits<double>::epsilon();
   const double here = variable;
   struct Difference {

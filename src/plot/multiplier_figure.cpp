@@ -16,7 +16,7 @@ namespace tchat {
 namespace {
 
 constexpr double farthest = 2.5;
-constexpr double critical_width = level::surely;  // of what has a label on the circle
+constexpr double critical_width = level::visible;  // of what has a label on the circle
 
 Curve unit_circle() {
   constexpr int corners = 360;

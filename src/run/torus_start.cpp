@@ -281,7 +281,7 @@ std::string rough_torus(const RunSettings& one_return, const TorusSystem& system
   const int harmonics = (system.orbits() - 1) / 2;
   const bool may_grow = one_return.harmonic_tolerance > 0.0 && harmonics < most_harmonics(one_return);
   const double last = last_harmonics(system, x);
-  if (may_grow || last < level::surely) return "";
+  if (may_grow || last < level::visible) return "";
   const std::string fraction = near_fraction(TorusSystem::rotation(x));
   return fmt::format(
       "the last of {} harmonics are {:.1e} of the torus: it is about to lose its smoothness, or locks to a periodic "

@@ -315,7 +315,7 @@ class HalvesMeetTest final : public TestFunction {
   bool is_genuine(const TestedPoint& point) const override {
     double largest = 0.0;
     for_differences(point, [&](double difference) { largest = std::max(largest, std::abs(difference)); });
-    return largest <= level::surely * (1.0 + largest_state(point.orbit));
+    return largest <= level::visible * (1.0 + largest_state(point.orbit));
   }
   SpecialPoint classify(const TestedPoint&, bool) const override {
     return {PointType::doubled_fold_end, {}, true, "the halves of the doubled orbit meet: the curve begins there"};

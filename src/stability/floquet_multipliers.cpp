@@ -52,7 +52,7 @@ using Vector = Eigen::VectorXd;
 using RowMajorBlock = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
 /// h_x f / (|h_x| |f|) below which a multiplier may be 0/0: with errors of `no_transversality` it is then off by 1e-5.
-constexpr double near_grazing = level::surely;
+constexpr double near_grazing = level::visible;
 /// A multiplier that an error moves further, as a chord of the Riemann sphere where h_x f = 0, is not known.
 constexpr double unknown = 1e-2;
 /// A larger one at h_x f = 0 is infinite.

@@ -83,7 +83,7 @@ double multiplier_distance(const FloquetMultipliers& multipliers, double target)
 
 int touching_segment(std::span<const double> transversalities) {
   for (std::size_t s = 0; s < transversalities.size(); ++s)
-    if (std::abs(transversalities[s]) < level::surely) return static_cast<int>(s);
+    if (std::abs(transversalities[s]) < level::visible) return static_cast<int>(s);
   return -1;
 }
 
