@@ -10,6 +10,7 @@
 #include <csignal>
 #include <exception>
 #include <iostream>
+#include <limits>
 
 #include "plugin/exit_guard.hpp"
 #include "plugin/plugin_build.hpp"
@@ -112,7 +113,9 @@ CLI::Validator whole_number(long least, long most) {
       "");
 }
 
-CLI::Validator positive_time() { return number_within(1e-300, 1e300, "a finite number > 0"); }
+CLI::Validator positive_time() {
+  return number_within(std::numeric_limits<double>::min(), 1e300, "a finite number > 0");
+}
 
 void add_problem_options(CLI::App& command, SimulationRequest& request) {
   command.add_option("NAME", request.name, "problem NAME.cpp or NAME.tch; reads gc.NAME if it exists")->required();

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "app/command_options.hpp"
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "base/words.hpp"
 #include "maps/map_sweep_problem.hpp"
@@ -53,7 +54,7 @@ void add_exponent_options(CLI::App& command, SimulationRequest& request, std::st
       .add_option("--accuracy", request.accuracy,
                   "without --time and --events: continue until error bars are below E, at most 100000 events")
       ->type_name("E")
-      ->check(number_within(1e-12, 1e300, "a number from 1e-12"))
+      ->check(number_within(level::negligible, 1e300, "a number from 1e-12"))
       ->capture_default_str()
       ->needs("--lyapunov")
       ->group(group);
@@ -264,7 +265,7 @@ void add_sweep_command(CLI::App& app, std::function<int()>& chosen) {
   SimulationRequest& simulation = request->simulation;
   simulation.plan.transient_events = 1000;
   simulation.plan.events = 100;
-  simulation.tolerance = 1e-8;  // of a method whose steps are better than their estimate
+  simulation.tolerance = level::differences;  // of a method whose steps are better than their estimate
   add_problem_options(*command, simulation);
   command->add_option("-o,--output", simulation.output, "write O.sweep [NAME]")->type_name("O");
   command->add_flag("-q,--quiet", simulation.quiet, "print no summary");

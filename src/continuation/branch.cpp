@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "base/levels.hpp"
+
 namespace tchat {
 
 namespace {
@@ -55,7 +57,7 @@ std::optional<UnlabelledChange> StabilityWatch::add(const Point& point, bool is_
 StepSize::StepSize(const StepSettings& settings) : settings_(settings), ds_(settings.initial) {}
 
 double StepSize::smallest() const {
-  return std::max(settings_.minimum, 1e-10 * std::max(std::abs(settings_.initial), settings_.maximum));
+  return std::max(settings_.minimum, level::converged * std::max(std::abs(settings_.initial), settings_.maximum));
 }
 
 bool StepSize::is_short() const {

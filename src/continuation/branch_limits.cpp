@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "continuation/newton_chord.hpp"
 #include "continuation/orbit_trend.hpp"
 #include "continuation/solution_measure.hpp"
@@ -120,7 +121,6 @@ std::string lost_multiplier(const OrbitCondition* condition, const PointData& da
 }
 
 std::string undetermined_duration(const DefiningSystem& system, const Orbit& x) {
-  constexpr double rounding = 1e-12;
   StackVector f(x.shape.dimension);
   const double sizes = 1.0 + largest_state(x);
   const double period = x.period();
@@ -129,7 +129,7 @@ std::string undetermined_duration(const DefiningSystem& system, const Orbit& x) 
     system.system().value(FunctionKind::field, system.signature()[static_cast<std::size_t>(s)].field, x.end(s),
                           x.par.data(), f.data());
     const double moved = f.cwiseAbs().maxCoeff() * std::abs(x.duration(s));
-    if (moved < rounding * sizes)
+    if (moved < level::negligible * sizes)
       return fmt::format(
           "segment {} ends at rest to within rounding (|f| T = {:.1e}), so that its duration {:.6g} is not "
           "determined",
@@ -242,9 +242,9 @@ constexpr double one_direction = 0.99;
 /// So many of Newton's tolerances are no difference.
 constexpr double same = 10.0;
 /// Measures of one orbit with different phases differ by the error of their quadrature.
-constexpr double same_measures = 1e-6;
+constexpr double same_measures = level::located;
 /// A step along the tangent, to see how measures change.
-constexpr double probe = 1e-4;
+constexpr double probe = level::visible;
 
 /// Is `ratio` on [0, 1] but for the margin?
 bool is_on_step(double ratio) { return ratio >= -margin && ratio <= 1.0 + margin; }
@@ -306,7 +306,7 @@ std::optional<double> ClosedBranch::place_of_measures(const PathPoint& here, con
 /// Steps from `way.from` to the first point: true, and the length of the step, when that is where it leads.
 bool ClosedBranch::reach(Return& way, const PathPoint& next, double ds) {
   constexpr int most_trials = 8;
-  constexpr double settled = 1e-10;  // share of the step
+  constexpr double settled = level::converged;  // share of the step
   PathPoint trial = way.from;
   if (phase_is_fixed_) {
     way.length = dot_difference(way.from.dual, first_.orbit, way.from.orbit, system_.free_parameters());

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/levels.hpp"
 #include "continuation/path_follower.hpp"
 
 namespace tchat {
@@ -23,8 +24,8 @@ constexpr double narrow_enough = 0.01;
 constexpr int most_halvings = 12;
 constexpr std::size_t most_nodes = 4;
 /// The best that is asked for where rounding and Newton's tolerances forbid more: an arclength, or a share of the step.
-constexpr double reachable = 1e-7;
-constexpr double reachable_share = 1e-5;
+constexpr double reachable = level::tolerance;
+constexpr double reachable_share = level::same;
 /// Around a zero the function changes by a smaller share than this of its change over the step; at a jump it does not.
 constexpr double jump_share = 0.5;
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "continuation/branch_limits.hpp"
 #include "continuation/orbit_limit.hpp"
 #include "orbit/defining_system.hpp"
@@ -21,7 +22,7 @@ namespace {
 
 /// The principal parameter's part of the tangent, as a share of its largest one on the branch, that is rounding when
 /// one end of a step has no more.
-constexpr double insignificant_turn = 1e-7;
+constexpr double insignificant_turn = level::tolerance;
 /// A part that falls to rounding from this many times more within a step does not fade: the step ends on a fold, or the
 /// one before has.
 constexpr double sudden = 1e3;
@@ -29,10 +30,10 @@ constexpr double sudden = 1e3;
 /// known to EPSS, and where Newton's matrix is singular anyway.
 constexpr double shrunk_where_located = 1e-3;
 /// So near to a point a branch is followed that leads through it: Newton's matrix is as near to a singular one.
-constexpr double shrunk_enough = 1e-4;
+constexpr double shrunk_enough = level::visible;
 /// The deviations of orbits before and behind a point are opposite but for what a step changes.
 constexpr double opposite = -0.8;
-constexpr double shrunk = 1e-6;
+constexpr double shrunk = level::located;
 /// Special points that are so many tolerances of their location away from a point are at that point.
 constexpr double same_place = 10.0;
 
@@ -58,7 +59,7 @@ std::vector<std::unique_ptr<TestFunction>> with_bounds(std::vector<std::unique_p
 /// Do the multipliers alone show a fold? In a canard explosion the parameter hardly moves. Near a Hopf bifurcation one
 /// is near 1 on all orbits.
 bool comes_to_multiplier_one(const PointData& before, const PointData& data) {
-  constexpr double accurate = 1e-3, near = 1e-2, away = 1e-4;
+  constexpr double accurate = 1e-3, near = 1e-2, away = level::visible;
   const FloquetMultipliers& multipliers = data.multipliers;
   return multiplier_distance(before.multipliers, 1.0) > away && multipliers.determined() &&
          !multipliers.are_eigenvalues && multiplier_accuracy(multipliers) <= accurate &&
@@ -151,11 +152,16 @@ BranchSummary ContinuationRun::run(PathPoint start) {
   return summary_;
 }
 
+void ContinuationRun::add_to_trend() {
+  const double parameter = here_.orbit.par(settings_.principal - 1);
+  trend_.add(here_.orbit, parameter, system_.system().parameter_size(settings_.principal, parameter));
+}
+
 /// From a point that was recorded on another discretisation.
 void ContinuationRun::resume() {
   mark_accepted();
   accepted_data_ = next_.data;
-  trend_.add(here_.orbit, here_.orbit.par(settings_.principal - 1));
+  add_to_trend();
   summary_.points = number_;
   stability_.begin({number_, parameter_at(here_), {}, accepted_data_.multipliers});
 }
@@ -426,7 +432,7 @@ void ContinuationRun::accept(const SpecialPoint& special) {
   mark_accepted();
   accepted_data_ = next_.data;
   if (special.type != PointType::ordinary) accepted_data_.details = search_.details(here_, accepted_data_);
-  trend_.add(here_.orbit, here_.orbit.par(settings_.principal - 1));
+  add_to_trend();
   record(special, accepted_data_);
 }
 

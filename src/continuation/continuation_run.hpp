@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/levels.hpp"
 #include "continuation/branch.hpp"
 #include "continuation/branch_limits.hpp"
 #include "continuation/orbit_trend.hpp"
@@ -28,7 +29,7 @@ struct ContinuationSettings {
   int print_every = 0;                                   ///< NPR
   int adapt_mesh_every = 0;                              ///< IAD
   bool multipliers = true;                               ///< ISP > 0
-  double location_tolerance = 1e-7;                      ///< EPSS
+  double location_tolerance = level::tolerance;          ///< EPSS
   int max_location = 10;                                 ///< ITMX
   bool label_start = true;                               ///< false at a restart: the first point is known already
   bool stop_when_closed = true;                          ///< CLSTOP
@@ -105,6 +106,7 @@ class ContinuationRun {
   bool may_go_to_next();
   void write_last_again(PointType type);
   bool turns_visibly(double parameter) const;
+  void add_to_trend();
 
   PathFollower& follower_;
   const DefiningSystem& system_;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/levels.hpp"
+
 namespace tchat {
 
 namespace {
@@ -10,11 +12,9 @@ namespace {
 constexpr double divergence_factor = 20.0;
 /// A matrix of a point that is no farther away (relatively) is not made anew: the path follower takes the tangent from
 /// it as well.
-constexpr double as_good_as_new = 1e-10;
+constexpr double as_good_as_new = level::converged;
 /// Residuals below this times 1 + max |u| are rounding.
 constexpr double rounding_residual = 200 * std::numeric_limits<double>::epsilon();
-/// A stalled iteration is accepted at rounding-level residual when its corrections are about sqrt(rounding) or less.
-constexpr double stalled_change = 1e-6;
 /// A correction larger than this multiple of a residual at rounding level says nothing: the matrix is nearly singular.
 constexpr double magnified = 1e6;
 
@@ -120,7 +120,7 @@ NewtonResult NewtonChord::correct(Orbit& x, const OrbitVector& row, double chang
       result.status = NewtonStatus::diverging;
       return result;
     }
-    if (iteration > 2 && larger < stalled_change && rounding) {
+    if (iteration > 2 && larger < level::stalled && rounding) {
       result.status = NewtonStatus::converged;
       return result;
     }

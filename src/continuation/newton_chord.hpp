@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/levels.hpp"
 #include "linear/array_kernel.hpp"
 #include "orbit/bordered_problem.hpp"
 
@@ -51,8 +52,8 @@ std::string describe(NewtonStatus status);
 struct NewtonSettings {
   int max_iterations = 8;
   int full_iterations = 3;
-  double tolerance_parameters = 1e-7;
-  double tolerance_states = 1e-7;
+  double tolerance_parameters = level::tolerance;
+  double tolerance_states = level::tolerance;
   int threads = 1;  ///< that may share the linear algebra of a Newton matrix; results do not depend on it
 };
 

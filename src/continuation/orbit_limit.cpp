@@ -4,6 +4,8 @@
 #include <cmath>
 #include <span>
 
+#include "base/levels.hpp"
+
 namespace tchat {
 
 namespace {
@@ -69,7 +71,7 @@ std::optional<PathPoint> smallest_orbit(PathFollower& follower, const DefiningSy
   const bool is_branch = condition == nullptr && system.free_count() == 1 && follower.held().empty();
   if (system.orbits() > 1 || !is_smooth(system) || !(is_branch || are_folds)) return std::nullopt;
   constexpr std::array of_folds = {1e-2, 2e-3, 5e-4};
-  constexpr std::array of_branch = {1e-2, 1e-3, 1e-4, 1e-5};
+  constexpr std::array of_branch = {1e-2, 1e-3, level::visible, level::same};
   const std::span<const double> shares = are_folds ? std::span<const double>(of_folds) : of_branch;
   PathPoint here = from;
   double reached = 1.0;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "base/levels.hpp"
 #include "linear/dense_matrix.hpp"
 #include "orbit/equilibrium_system.hpp"
 #include "stability/bifurcation_tests.hpp"
@@ -17,10 +18,10 @@ namespace tchat {
 namespace {
 
 /// The parameter stands still while it moves no more than this (relatively), the period grows by more than that factor.
-constexpr double standstill = 1e-6;
+constexpr double standstill = level::located;
 constexpr double growth = 1.5;
 /// A state whose range is a smaller share of it does not move.
-constexpr double rounding = 1e-10;
+constexpr double rounding = level::converged;
 
 /// What deviates from its mean along each row: a state over the orbit, or a node's state over the returns of a torus.
 Eigen::Map<const Eigen::MatrixXd> rows_of(const Eigen::MatrixXd& states, int orbits) {
@@ -130,7 +131,7 @@ double deviation_growth(const Orbit& x, const Eigen::MatrixXd& direction, int or
   return sums.both / sums.x;
 }
 
-void OrbitTrend::add(const Orbit& x, double parameter) {
+void OrbitTrend::add(const Orbit& x, double parameter, double parameter_size) {
   const bool first = largest_.size() == 0;
   if (first) {
     largest_.setZero(x.shape.dimension);
@@ -155,7 +156,7 @@ void OrbitTrend::add(const Orbit& x, double parameter) {
     }
   });
   if (first) first_parameter_ = parameter;
-  size_ = std::max({size_, std::abs(parameter), std::abs(parameter - first_parameter_)});
+  size_ = std::max({size_, parameter_size, std::abs(parameter - first_parameter_)});
   if (first || !(std::abs(parameter - still_.parameter) <= standstill * size_)) still_ = {parameter, x.period()};
   last_ = {parameter, x.period()};
 }
@@ -242,7 +243,7 @@ Resting near_equilibrium(const DefiningSystem& system, const Orbit& x, double si
   const auto fold = find_fold(system.system(), start.field, start.state, x.par, active);
   if (fold && std::abs(fold->parameter - x.par(active - 1)) <= standstill * size_of_parameter)
     resting.fold = near(fold->state, fold->jacobian);
-  if (const auto found = find_equilibrium(system.system(), start.field, start.state, x.par.data(), {}))
+  if (const auto found = find_equilibrium(system.system(), start.field, start.state, x.par.data(), {}, ranges))
     resting.equilibrium = near(found->state, found->jacobian);
   return resting;
 }
@@ -259,10 +260,9 @@ std::string eigenvalue_text(const Eigen::VectorXcd& values) {
 
 /// Without an unstable direction an orbit leaves it by an event alone.
 bool is_left_by_flow(const Eigen::VectorXcd& values) {
-  constexpr double rounding = 1e-9;
   const double largest = values.cwiseAbs().maxCoeff();
   const auto parts = values.real().array();
-  return (parts >= -rounding * largest).any() && (parts <= rounding * largest).any();
+  return (parts >= -level::orbit * largest).any() && (parts <= level::orbit * largest).any();
 }
 
 }  // namespace

@@ -42,8 +42,8 @@ class OrbitTrend {
  public:
   explicit OrbitTrend(int orbits = 1) : orbits_(orbits) {}
 
-  /// An accepted point of the branch; `parameter` is the principal one.
-  void add(const Orbit& x, double parameter);
+  /// An accepted point of the branch; `parameter` is the principal one, of this size.
+  void add(const Orbit& x, double parameter, double parameter_size);
 
   /// Is every state's range of deviations at most this share of its largest one so far?
   bool has_shrunk(const Orbit& x, double share) const;

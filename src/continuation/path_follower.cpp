@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "base/levels.hpp"
 #include "linear/array_kernel.hpp"
 
 namespace tchat {
@@ -95,7 +96,7 @@ void PathTrail::change_mesh(const std::vector<double>& mesh, const MeshTransfer&
 namespace {
 
 /// Factors older than this (relative change of the point since) are renewed before anything is read off them.
-constexpr double current_enough = 1e-10;
+constexpr double current_enough = level::converged;
 /// A prediction is brought so near by chord iterations that the first correction with a new matrix is below that.
 constexpr double near_enough = 0.3 * current_enough;
 constexpr int most_chords = 3;
@@ -351,7 +352,6 @@ IterationRange PathFollower::iterations_along_tangent(const PathPoint& from, dou
 /// Each iteration with a new matrix leaves C e^2 of an error e, a chord iteration 2 C e times what the errors were when
 /// the matrix was new.
 int PathFollower::iterations_of(const OrbitChange& first, const OrbitChange& second, double constant) const {
-  constexpr double rounding = 1e-14;
   const auto small = [&](const OrbitChange& change) {
     return change.parameters <= settings_.tolerance_parameters && change.states < settings_.tolerance_states;
   };
@@ -363,7 +363,7 @@ int PathFollower::iterations_of(const OrbitChange& first, const OrbitChange& sec
   int iterations = 2;
   for (OrbitChange change = second; iterations < settings_.max_iterations && !small(change); ++iterations) {
     const double factor = std::min(iterations < full ? constant * error : 2.0 * constant * at_matrix, 1.0);
-    error = std::max(error * factor, rounding);
+    error = std::max(error * factor, level::rounding);
     if (iterations < full) at_matrix = error;
     change = {error, error};
   }
@@ -399,7 +399,7 @@ double PathFollower::relative_residual(const Orbit& x) {
 
 /// The first component of the tangent that is not negligible decides: the principal parameter's when it varies.
 void PathFollower::orient(PathPoint& point) const {
-  constexpr double negligible = 1e-8;
+  constexpr double negligible = level::double_zero;
   double direction = principal_direction(point);
   for (Eigen::Index g = 0; std::abs(direction) < negligible && g < point.tangent.globals.size(); ++g)
     direction = point.tangent.globals(g);

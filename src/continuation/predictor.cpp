@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "continuation/path_follower.hpp"
 #include "linear/array_kernel.hpp"
 
@@ -17,7 +18,7 @@ void Predictor::accepted(const PathPoint& from, const std::vector<int>& free_par
 
 bool Predictor::rejected(const Prediction& prediction, double correction) const {
   // Smaller changes than this lead to no other branch.
-  constexpr double small_change = 1e-6;
+  constexpr double small_change = level::located;
   constexpr double largest_share = 0.5;
   return !(correction <= std::max(largest_share * prediction.change, small_change));
 }
@@ -35,7 +36,7 @@ constexpr double least_cosine = 0.5;
 /// The first term may change the step by this share of its length, each further one be this share of the last.
 constexpr double falling = 0.5;
 /// Terms below this are rounding.
-constexpr double negligible_term = 1e-14;
+constexpr double negligible_term = level::rounding;
 
 constexpr int most_inputs = 2 * PathTrail::most;
 /// A vector as a combination of w and w' at the points of the trail.
@@ -103,7 +104,7 @@ int useful_places(const PathPoint& from, double ds, const std::vector<int>& free
 /// compared with the point that the step goes from, whatever is predicted; the parameter of an unfolding follows
 /// from equations that have values; monitors keep values; parameters that are not free are copied.
 bool is_constant(const PathPoint& from, int s) {
-  constexpr double no_change = 1e-10;  // along the tangents, of unit length
+  constexpr double no_change = level::converged;  // along the tangents, of unit length
   bool constant = std::abs(from.tangent.durations(s)) <= no_change;
   for (int k = 0; k < from.trail.count(); ++k)
     constant = constant && std::abs(from.trail.mark(k).tangent.durations(s)) <= no_change;

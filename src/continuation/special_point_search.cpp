@@ -9,6 +9,7 @@
 #include <limits>
 #include <span>
 
+#include "base/levels.hpp"
 #include "continuation/branch_point_bracket.hpp"
 #include "continuation/path_follower.hpp"
 #include "orbit/admissibility.hpp"
@@ -26,7 +27,7 @@ namespace tchat {
 namespace {
 
 /// Functions that have fallen to this share of their change over the step vanish together with the one located.
-constexpr double together = 1e-5;
+constexpr double together = level::same;
 /// A step whose tangents make a larger angle (cosine) has come to another branch if the distance to a singular problem
 /// falls below this share.
 constexpr double same_direction = 0.95;
@@ -488,7 +489,7 @@ std::optional<BranchPointBracket> SpecialPointSearch::find_branch_point(const Pa
 /// ends with, or as well as a branch point can be interpolated.
 std::string SpecialPointSearch::objection_at(const BranchPointBracket& bracket, const PathPoint& trial,
                                              const PointData& at_zero) const {
-  constexpr double interpolated = 1e-8;
+  constexpr double interpolated = level::differences;
   const double residual = follower_.relative_residual(trial.orbit);
   if (!(residual <= std::max(interpolated, follower_.newton_settings().tolerance_states)))
     return fmt::format("{} changes sign, but no solution was found there (relative residual {:.1e}): no label",

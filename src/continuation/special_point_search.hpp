@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/levels.hpp"
 #include "continuation/branch.hpp"
 #include "continuation/branch_point_bracket.hpp"
 #include "continuation/newton_chord.hpp"
@@ -19,7 +20,7 @@ class PathFollower;
 
 struct LocationSettings {
   bool multipliers = true;                       ///< compute them (ISP > 0)
-  double tolerance = 1e-7;                       ///< on arclength
+  double tolerance = level::tolerance;           ///< on arclength
   int max_evaluations = 10;                      ///< ITMX
   std::vector<std::vector<int>> monitored = {};  ///< event functions of each segment, as in inadmissibilities()
 };

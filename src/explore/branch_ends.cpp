@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "base/levels.hpp"
 #include "base/words.hpp"
 #include "files/diagnostics_file.hpp"
 #include "files/solution_file_reader.hpp"
@@ -79,7 +80,7 @@ AdmissiblePoints admissible_points(const std::string& path) {
 }
 
 int other_field_at_rest(const HybridSystem& system, const LabelledSolution& solution, int field) {
-  constexpr double at_rest = 1e-6;  // a located point is known to EPSS
+  constexpr double at_rest = level::located;  // a located point is known to EPSS
   const LabelledSolution own = in_layout(solution, system.layout());
   const int n = system.dimension();
   if (own.states.rows() < n || own.states.cols() < 1) return 0;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/levels.hpp"
 #include "base/words.hpp"
 #include "files/dat_file.hpp"
 #include "files/solution_file_reader.hpp"
@@ -151,12 +152,14 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double same_parameter = 1e-9;  // relative to 1 + |p|
-/// 100 times the tolerance of Newton's method for states, EPSU = 1e-7: meshes add to what that leaves.
-constexpr double same_orbit = 1e-5;
+constexpr double same_parameter = level::orbit;  // of the largest |p| of the branch
+constexpr double same_orbit = level::same;
 
-bool is_at(double parameter, double value) {
-  return std::abs(parameter - value) <= same_parameter * (1.0 + std::abs(value));
+/// Has the parameter of a branch this value of another one?
+bool is_at(double parameter, double value, const CataloguedSection& branch) {
+  double largest = std::abs(value);
+  for (const double other : branch.parameter) largest = std::max(largest, std::abs(other));
+  return std::abs(parameter - value) <= same_parameter * largest;
 }
 
 /// States that nothing depends on, looked for at the orbit's own states.
@@ -268,7 +271,7 @@ BranchRecognition::Verdict BranchRecognition::compare_with_labels(const OwnOrbit
         known.signature.word != own.section->signature.word)
       continue;
     for (std::size_t row = 0; row < known.parameter.size(); ++row) {
-      if (known.labels[row] == 0 || !is_at(known.parameter[row], own.parameter())) continue;
+      if (known.labels[row] == 0 || !is_at(known.parameter[row], own.parameter(), known)) continue;
       if (is_same(own, known, read_label_of(commands_.file('q', branch), known.labels[row]))) return Verdict::same;
       verdict = Verdict::different;
     }
@@ -284,7 +287,7 @@ std::vector<BranchRecognition::KnownStart> BranchRecognition::starts_near(const 
     const CataloguedSection& known = *place.section;
     const auto is_labelled = [&](Index row) {
       const auto at = static_cast<std::size_t>(row);
-      return known.labels[at] > 0 && is_at(known.parameter[at], own.parameter());
+      return known.labels[at] > 0 && is_at(known.parameter[at], own.parameter(), known);
     };
     const Index from = nearest_labelled(known, place.point);
     if (from < 0 || is_labelled(place.point) || is_labelled(place.point + 1)) continue;
@@ -305,7 +308,8 @@ BranchRecognition::Verdict BranchRecognition::compare_with_run(const OwnOrbit& o
   if (!result.succeeded) return Verdict::unknown;
   Verdict verdict = Verdict::unknown;
   for (const LabelledSolution& other : read_solution_file(commands_.file('q', job.name)).solutions) {
-    if (!is_at(stored_parameter(other, own.solution.free_parameters.front()), own.parameter())) continue;
+    const double parameter = stored_parameter(other, own.solution.free_parameters.front());
+    if (!is_at(parameter, own.parameter(), *start.section)) continue;
     if (is_same(own, *start.section, other)) return Verdict::same;
     verdict = Verdict::different;
   }

@@ -8,6 +8,7 @@
 #include <functional>
 #include <numeric>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "base/words.hpp"
 #include "plugin/plugin_build.hpp"
@@ -23,9 +24,9 @@ using Eigen::Vector2d;
 using Eigen::VectorXd;
 
 /// In units of the ranges: points are located far more accurately.
-constexpr double place_tolerance = 1e-5;
+constexpr double place_tolerance = level::same;
 /// Relative, of whole numbers of periods.
-constexpr double period_tolerance = 1e-4;
+constexpr double period_tolerance = level::five_digits;
 
 /// Of an equilibrium the mean and the largest value of a state are the state.
 std::vector<std::size_t> number_columns(const PointSection& section, const CurveColumns& columns) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/levels.hpp"
 #include "base/words.hpp"
 #include "explore/branch_ends.hpp"
 #include "files/solution_file_reader.hpp"
@@ -32,7 +33,7 @@ struct CurveRounds::RunFiles {
 namespace {
 
 /// In units of the ranges.
-constexpr double same_place = 1e-6;
+constexpr double same_place = level::located;
 
 bool is_special(const std::string& type) { return !type.empty() && type != "EP" && type != "RG" && type != "UZ"; }
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "base/words.hpp"
 #include "explore/branch_ends.hpp"
 #include "files/point_file_reader.hpp"
@@ -18,9 +19,9 @@ namespace {
 
 using Points = std::vector<std::pair<double, double>>;
 
-constexpr std::size_t most_colours = 8;  // that distinguish branches in a key
-constexpr double cells = 48.0;           // of the grid along each axis
-constexpr double same_label = 1e-4;      // as a share of the range of the parameter
+constexpr std::size_t most_colours = 8;            // that distinguish branches in a key
+constexpr double cells = 48.0;                     // of the grid along each axis
+constexpr double same_label = level::five_digits;  // as a share of the range of the parameter
 
 /// Adds the points of a branch. False if one of its sections does not have the column.
 bool add_points(const PointFile& file, const std::string& column, Points& points) {
@@ -52,7 +53,7 @@ std::size_t cells_with_points(const Points& points) {
   const auto [left, right] = std::minmax_element(points.begin(), points.end());
   const auto [low, high] = std::minmax_element(points.begin(), points.end(),
                                                [](const auto& a, const auto& b) { return a.second < b.second; });
-  constexpr double rounding = 1e-6;
+  constexpr double rounding = level::located;
   const double width = right->first - left->first, height = high->second - low->second;
   const double size = std::max(std::abs(low->second), std::abs(high->second));
   std::set<std::pair<int, int>> found;

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "settings/problem_type.hpp"
 
 namespace tchat {
@@ -52,7 +53,7 @@ VectorXd with_period_of(const InterpolatedPoint& known, VectorXd numbers) {
 }
 
 bool are_near(const InterpolatedPoint& orbit, const VectorXd& numbers) {
-  constexpr double errors = 5.0, share = 1e-4;
+  constexpr double errors = 5.0, share = level::five_digits;
   const double size = numbers.cwiseAbs().maxCoeff();
   return ((orbit.numbers - numbers).array().abs() <= errors * orbit.uncertainty.array() + share * size).all();
 }
@@ -212,7 +213,8 @@ std::vector<std::string> OrbitCatalogue::branches_with(const SignatureWord& sign
     const std::vector<InterpolatedPoint> orbits = orbits_at(known, parameter);
     const bool has_one = std::any_of(orbits.begin(), orbits.end(), [&](const InterpolatedPoint& orbit) {
       const double time = orbit.numbers(0) * known.signature.repetitions;
-      const double tolerance = 2.0 * orbit.uncertainty(0) * known.signature.repetitions + 1e-4 * std::abs(period);
+      const double tolerance =
+          2.0 * orbit.uncertainty(0) * known.signature.repetitions + level::five_digits * std::abs(period);
       return std::abs(time - period) <= tolerance && about_agree(orbit, monitors);
     });
     if (has_one && std::find(branches.begin(), branches.end(), known.branch) == branches.end())
@@ -234,7 +236,7 @@ VectorXd polynomial_value(const std::vector<double>& coordinate, const Eigen::Ma
   for (Index k = first; k < last; ++k) {
     const double size = numbers.cwiseAbs().maxCoeff() + std::abs(p(k));
     const double step = std::hypot((numbers.col(k + 1) - numbers.col(k)).norm(), p(k + 1) - p(k));
-    distance(k + 1 - first) = distance(k - first) + std::max(step, 1e-14 * size);
+    distance(k + 1 - first) = distance(k - first) + std::max(step, level::rounding * size);
   }
   const auto value = [&](double s) {
     VectorXd result = VectorXd::Zero(rows + 1);
@@ -257,7 +259,7 @@ VectorXd polynomial_value(const std::vector<double>& coordinate, const Eigen::Ma
 }
 
 /// Of the largest number: runs leave errors far below this, and different orbits differ by far more.
-constexpr double least_uncertainty = 1e-5;
+constexpr double least_uncertainty = level::same;
 
 }  // namespace
 

@@ -14,6 +14,7 @@
 #include <optional>
 #include <set>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "files/auto_format.hpp"
 #include "files/solution_file_reader.hpp"
@@ -43,7 +44,7 @@ std::vector<BranchPiece> split_into_pieces(const std::vector<PointSection>& sect
 
 /// Same number as far as a file shows it: d-files and older p-files have 6 digits.
 bool agree(double a, double b) {
-  constexpr double six_digits = 1e-5;
+  constexpr double six_digits = level::same;
   return !(std::abs(a - b) > six_digits * std::max(std::abs(a), std::abs(b)));
 }
 

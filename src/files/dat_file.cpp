@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "base/text_file.hpp"
 #include "base/words.hpp"
@@ -302,7 +303,7 @@ DatFile read_dat_file(const std::string& path, int dimension, int segments) {
 namespace {
 
 /// Times nearer to each other than this share of a segment are one.
-constexpr double same_time = 1e-12;
+constexpr double same_time = level::negligible;
 
 double relative_time(const OrbitPart& part, std::size_t row) {
   return (part.times[row] - part.times.front()) / part.duration();

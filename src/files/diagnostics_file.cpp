@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/levels.hpp"
 #include "base/text_file.hpp"
 #include "base/words.hpp"
 #include "files/auto_format.hpp"
@@ -16,7 +17,7 @@ namespace {
 
 constexpr std::string_view end_of_run = "end of run";
 constexpr std::string_view auto_end_of_run = "Total Time";
-constexpr double stable_modulus = 1.0 + 1e-5;
+constexpr double stable_modulus = 1.0 + level::on_circle;
 
 constexpr std::string_view bar = "===============================================\n";  // 47
 

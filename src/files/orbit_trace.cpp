@@ -6,7 +6,9 @@
 #include <cmath>
 #include <complex>
 #include <filesystem>
+#include <limits>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "files/auto_format.hpp"
 #include "files/point_file_reader.hpp"
@@ -20,7 +22,7 @@ namespace tchat {
 
 namespace {
 
-constexpr double jump_tolerance = 1e-6;
+constexpr double jump_tolerance = level::located;
 
 int segments_of(const LabelledSolution& solution, int dimension, const std::string& path) {
   const auto rows = static_cast<int>(solution.states.rows());
@@ -45,7 +47,8 @@ bool OrbitTrace::jumps_after(std::size_t s, Eigen::Index i) const {
   if ((!is_closed && s + 1 == segments.size()) || ends_return(s) || is_section) return false;
   double size = 0.0;
   for (const TraceSegment& segment : segments) size = std::max(size, segment.states.row(i).cwiseAbs().maxCoeff());
-  return std::abs(start_after(s)(i) - end_of(s)(i)) > jump_tolerance * std::max(size, 1e-300);
+  return std::abs(start_after(s)(i) - end_of(s)(i)) >
+         jump_tolerance * std::max(size, std::numeric_limits<double>::min());
 }
 
 OrbitTrace orbit_trace(const LabelledSolution& solution, const std::string& name, int dimension,
@@ -179,7 +182,7 @@ OrbitTrace section_trace(const LabelledSolution& solution, const std::string& na
 
 namespace {
 
-constexpr double critical_width_of_orbits = 1e-4;
+constexpr double critical_width_of_orbits = level::visible;
 
 std::map<int, LineKind> kinds_in_diagnostics(const std::string& path) {
   std::map<int, LineKind> kinds;

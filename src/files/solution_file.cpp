@@ -7,6 +7,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "base/text_file.hpp"
 #include "base/words.hpp"
@@ -237,7 +238,7 @@ std::vector<double> all_parameters(const LabelledSolution& solution, const Entry
 /// Polynomials on the segments' own meshes are extended a little beyond the states that are written; times that lie
 /// close together differ in their last digits only.
 bool needs_all_digits(const LabelledSolution& solution) {
-  constexpr double closest = 1e-6;
+  constexpr double closest = level::located;
   const std::vector<double>& tau = solution.tau;
   return !solution.own_mesh.empty() ||
          std::adjacent_find(tau.begin(), tau.end(), [](double a, double b) { return b - a < closest; }) != tau.end();

@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "base/text_file.hpp"
 #include "base/words.hpp"
@@ -368,7 +369,7 @@ class SolutionReader {
       throw UserError(fmt::format("{}: solution with label {}: {}; t must rise from 0 to 1", place(entry_line),
                                   solution.label, what));
     };
-    constexpr double rounding = 1e-8;
+    constexpr double rounding = level::differences;
     if (std::abs(solution.tau.front()) > rounding || std::abs(solution.tau.back() - 1.0) > rounding)
       refuse_here(fmt::format("t runs from {} to {}", solution.tau.front(), solution.tau.back()));
     const auto step = static_cast<std::size_t>(solution.collocation_points);

@@ -9,13 +9,15 @@
 #include <set>
 #include <utility>
 
+#include "base/levels.hpp"
+
 namespace tchat {
 
 namespace {
 
 using Eigen::VectorXd;
 
-constexpr double rounding = 1e-7;
+constexpr double rounding = level::tolerance;
 
 /// The largest relative change, and where it was found.
 struct LargestChange {
@@ -111,7 +113,7 @@ class Conservation {
       const double step = h / gradient.squaredNorm();
       if (!std::isfinite(step)) return std::nullopt;
       x -= step * gradient;
-      if (std::abs(step) * gradient.norm() <= 1e-14 * (1.0 + x.norm())) return x;
+      if (std::abs(step) * gradient.norm() <= level::rounding * x.norm()) return x;
     }
     return event == no_function ? std::optional(x) : std::nullopt;
   }

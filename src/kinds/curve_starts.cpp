@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "orbit/bordered_problem.hpp"
 #include "orbit/curve_conditions.hpp"
@@ -180,7 +181,7 @@ std::string nature_text(ReducedGradient::Nature nature) {
 
 /// "Gradient of cost: alpha 0, omega 0.312; a minimum in alpha"
 std::string gradient_text(const HybridSystem& system, const RunSettings& settings, const Orbit& x) {
-  constexpr double near = 1e-5;  // what a located extremum leaves
+  constexpr double near = level::same;  // what a located extremum leaves
   const PeriodicOrbitSystem orbits(system, settings.signature(), gradient_parameters(system, settings));
   const std::shared_ptr<const Monitor> objective = principal_monitor(orbits, settings);
   const BranchMonitors monitors = branch_monitors(orbits, settings, x);

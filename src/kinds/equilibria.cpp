@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/levels.hpp"
 #include "continuation/orbit_trend.hpp"
 #include "kinds/families.hpp"
 #include "kinds/orbit_check.hpp"
@@ -151,7 +152,7 @@ BranchCurve hopf(const EquilibriumSystem& system, const RunSettings& run, const 
 /// The event function that is zero at a start: that of a BE label, elsewhere the monitored one nearest to zero. A BE
 /// label on such a curve (tens digit) is where another one vanishes as well. 0 where none is zero.
 int boundary_event(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start) {
-  const double at_zero = std::max(1e-6, settings.tolerance_special);  // a located point is known to EPSS
+  const double at_zero = std::max(level::located, settings.tolerance_special);  // a located point is known to EPSS
   const bool is_label = start.kind.kind == UserPointKind::boundary_equilibrium;
   const bool is_on_curve = basic_type(start.type) != start.type;
   if (is_label && !is_on_curve) return start.kind.index;

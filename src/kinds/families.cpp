@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "continuation/branch_limits.hpp"
 #include "continuation/orbit_trend.hpp"
@@ -63,11 +64,11 @@ namespace {
 
 /// An orbit whose period is a smaller part of its start's is the empty orbit that every event surface has: x_s(0) =
 /// x_s(1) with T_s = 0 for all s satisfies every condition where h = 0 and g(x) = x.
-constexpr double vanishing_period = 1e-5;
+constexpr double vanishing_period = level::same;
 /// An orbit whose states all move by a smaller part of what they did at the start, or by no more than Newton's method
 /// ends with, is an equilibrium.
-constexpr double vanishing_range = 1e-4;
-constexpr double no_range = 1e-7;
+constexpr double vanishing_range = level::visible;
+constexpr double no_range = level::tolerance;
 
 /// The angular frequency with which an orbit that has shrunk to a point goes around it, if the flow is smooth there and
 /// the period is that of the linear oscillation.

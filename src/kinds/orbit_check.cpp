@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/levels.hpp"
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
 #include "orbit/admissibility.hpp"
@@ -126,7 +127,7 @@ using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
 /// What q-files round away, and Newton's method leaves.
-constexpr double stored_accuracy = 1e-9;
+constexpr double stored_accuracy = level::orbit;
 /// What integration along a segment must at least tell: where errors of the start grow by more, its end says nothing.
 constexpr double most_allowed = 1e-2;
 /// A difference of multipliers is no defect where a change of the map by this part of the tolerance explains it.
@@ -203,12 +204,13 @@ MatrixXd next_starts(const Orbit& x) {
 bool takes_turns_off(const HybridSystem& system, int jump, const VectorXd& x, const VectorXd& par,
                      const std::vector<Eigen::Index>& angles) {
   if (angles.empty()) return false;
-  constexpr double turn = 2.0 * std::numbers::pi, rounding = 1e-9;
+  constexpr double turn = 2.0 * std::numbers::pi;
   VectorXd change(x.size());
   system.value(FunctionKind::jump, jump, x.data(), par.data(), change.data());
   change -= x;
-  for (const Eigen::Index a : angles) change(a) = std::remainder(change(a), turn);
-  return change.cwiseAbs().maxCoeff() <= rounding * (1.0 + x.cwiseAbs().maxCoeff());
+  VectorXd sizes = x.cwiseAbs();
+  for (const Eigen::Index a : angles) change(a) = std::remainder(change(a), turn), sizes(a) = turn;
+  return (change.array().abs() <= level::orbit * sizes.array()).all();
 }
 
 /// NaN stays.

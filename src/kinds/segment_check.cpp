@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "base/levels.hpp"
 #include "model/events.hpp"
 #include "motion/cvodes_flow.hpp"
 
@@ -20,7 +21,7 @@ using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
 /// A duration below this share of the period needs no integrator: two terms of the Taylor series are exact to rounding.
-constexpr double shortest_duration = 1e-7;
+constexpr double shortest_duration = level::double_zero;
 constexpr int samples_of_a_step = 8;
 
 /// h and its derivatives along the flow of a field, at one state.
@@ -140,7 +141,7 @@ class Watcher {
     const auto is_neutral = [&](int jump) {
       VectorXd after(x.size());
       system_.value(FunctionKind::jump, jump, x.data(), par_.data(), after.data());
-      return all_finite(after.data(), static_cast<int>(after.size())) && largest(after - x, scale_) < 1e-9;
+      return all_finite(after.data(), static_cast<int>(after.size())) && largest(after - x, scale_) < level::orbit;
     };
     if (event == segment_.index.event)
       return segment_.next_field == segment_.index.field && is_neutral(segment_.index.jump);
@@ -275,7 +276,7 @@ struct Crossing {
 };
 
 /// Of the duration: a crossing that lies farther from the end is another one.
-constexpr double closest = 1e-6;
+constexpr double closest = level::located;
 
 /// Nothing where there is none that close to the end.
 std::optional<Crossing> crossing(const HybridSystem& system, const StoredSegment& segment, const VectorXd& par,
@@ -293,8 +294,7 @@ std::optional<Crossing> crossing(const HybridSystem& system, const StoredSegment
 
 FlowOptions options_of_check(const VectorXd& scale) {
   FlowOptions options;
-  options.relative_tolerance = 1e-13;
-  options.absolute_tolerance = 1e-15;
+  options.set(level::reference_flow);
   options.sizes = scale;
   options.max_steps = 20000;
   return options;
@@ -309,8 +309,7 @@ Passage pass(const HybridSystem& system, const StoredSegment& segment, const Vec
   Passage passage = integrate(system, segment, par, scale, options, tolerance);
   if (passage.message.empty()) return passage;
   options.method = IntegrationMethod::bdf;
-  options.relative_tolerance = 1e-11;
-  options.absolute_tolerance *= 100.0;
+  options.set(level::stiff_flow);
   options.max_steps = 1000000;
   return integrate(system, segment, par, scale, options, tolerance);
 }

@@ -10,6 +10,7 @@
 #include <map>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "files/auto_format.hpp"
 #include "files/diagnostics_file.hpp"
@@ -90,7 +91,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// |h_x f| up to this share of |h_x| |f| is contact.
-constexpr double least_rate = 1e-6;
+constexpr double least_rate = level::located;
 
 /// The N returns that begin at the phases offset + i / N.
 Orbit returns_from(const TorusSystem& torus, const Orbit& x, double offset) {
@@ -348,7 +349,7 @@ class Table {
     std::string text = event == no_function ? "-" : event_name(event);
     for (const EventMet& met : segment.wrong)
       text += fmt::format(", but {} at t = {:.6g} comes first (depth {:.1e})", event_name(met.event),
-                          met.time > 1e-9 * check.period ? met.time : 0.0, met.depth);
+                          met.time > level::orbit * check.period ? met.time : 0.0, met.depth);
     if (segment.leaves_surface) text += ", crossed from below";
     if (segment.breaks_rules) text += ", after which the problem's rules have another segment";
     if (check.durations[s] < 0.0 && segment.wrong.empty()) text += ", negative duration";

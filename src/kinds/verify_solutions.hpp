@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/levels.hpp"
 #include "files/solution_file.hpp"
 #include "kinds/orbit_check.hpp"
 
@@ -42,7 +43,7 @@ struct VerifyRequest {
   std::vector<std::string> labels;       ///< numbers, or types with a count; empty: all
   std::optional<std::string> constants;  ///< -c; default the r-file beside the q-file
   std::optional<std::string> problem;    ///< -p; default the name of the q-file
-  double tolerance = 1e-6;
+  double tolerance = level::located;
 };
 
 /// True when every label is, to the tolerance, what forward integration makes of it (or is inadmissible and the d-file

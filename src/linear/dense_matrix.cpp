@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/levels.hpp"
 #include "linear/lapack.hpp"
 
 namespace tchat {
@@ -109,7 +110,7 @@ Eigen::VectorXcd solve_shifted(const Eigen::MatrixXd& matrix, std::complex<doubl
 }
 
 Eigen::VectorXcd eigenvector(const Eigen::MatrixXd& matrix, std::complex<double> eigenvalue) {
-  constexpr double beside = 1e-13;  // the matrix is to be nearly singular, not singular
+  constexpr double beside = level::rounding_of_sums;  // the matrix is to be nearly singular, not singular
   const std::complex<double> shift = eigenvalue + beside * (std::abs(eigenvalue) + matrix.norm());
   Eigen::VectorXcd v(matrix.rows());
   for (Eigen::Index i = 0; i < v.size(); ++i) v(i) = {std::cos(1.0 + 0.7 * static_cast<double>(i)), 0.3};

@@ -6,6 +6,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -338,7 +339,8 @@ SparseLu::Condition SparseLu::condition() const {
   for (int attempt = 1; status != UMFPACK_OK && attempt < 8; ++attempt) {
     umfpack_di_free_numeric(&work.numeric);
     for (Eigen::Index k = 0; k < moved.nonZeros(); ++k)
-      moved.valuePtr()[k] += 1e-15 * std::sin(1.0 + static_cast<double>(k * (attempt + 1)));
+      moved.valuePtr()[k] +=
+          std::numeric_limits<double>::epsilon() * std::sin(1.0 + static_cast<double>(k * (attempt + 1)));
     status = umfpack_di_numeric(moved.outerIndexPtr(), moved.innerIndexPtr(), moved.valuePtr(), work.symbolic,
                                 &work.numeric, work.control, work.info);
   }

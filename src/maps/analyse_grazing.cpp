@@ -6,12 +6,15 @@
 #include <cmath>
 #include <complex>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "files/auto_format.hpp"
 #include "files/run_files.hpp"
 #include "files/solution_file_reader.hpp"
 #include "maps/grazing_point.hpp"
+#include "model/events.hpp"
 #include "model/index_vector.hpp"
+#include "model/scales.hpp"
 #include "plugin/plugin_build.hpp"
 #include "plugin/problem_library.hpp"
 #include "plugin/problem_setup.hpp"
@@ -196,8 +199,7 @@ constexpr int width = 20;
 
 /// What is zero but for rounding beside `scale` is printed as zero: rounding differs from machine to machine.
 std::string entry(double value, double scale) {
-  constexpr double rounding = 1e-14;
-  return fmt::format("{:>{}.11g}", std::abs(value) <= rounding * scale ? 0.0 : value, width);
+  return fmt::format("{:>{}.11g}", std::abs(value) <= level::rounding * scale ? 0.0 : value, width);
 }
 
 /// Of the first `states` states, which the mode in contact has.
@@ -245,9 +247,11 @@ std::string section_text(const HybridSystem& system, const DiscontinuityMap& map
   if (!map.section()) return "P (h_P = 0)";
   const CrossSection& section = *map.section();
   if (section.event == 0) return fmt::format("P' (constant {})", system.state_name(section.state));
-  double level = system.event(section.event, map.point().x.data(), map.point().par.data());
-  if (std::abs(level) < 1e-9) level = 0.0;
-  return fmt::format("P' ({} = {:.6g})", function_text(system, FunctionKind::event, section.event), level);
+  const GrazingPoint& at = map.point();
+  const EventAt met = event_at(system, section.event, at.x.data(), at.par.data());
+  const double scale = met.scale(at.x.data(), sizes_at(system, at.field, at.x, at.par));
+  return fmt::format("P' ({} = {:.6g})", function_text(system, FunctionKind::event, section.event),
+                     std::abs(met.h) <= level::orbit * scale ? 0.0 : met.h);
 }
 
 std::string expansion_text(const HybridSystem& system, const DiscontinuityMap& map) {
@@ -336,7 +340,7 @@ std::string point_report(const HybridSystem& system, const GrazingPoint& point) 
           row("h_P,x", point.section_gradient.head(n)) + row("f", point.f.head(n));
   const double scale = point.f.norm();
   const auto direction = [&](const VectorXd& v) {
-    return v.norm() <= 1e-12 * scale ? VectorXd::Zero(n) : VectorXd(v.head(n));
+    return v.norm() <= level::negligible * scale ? VectorXd::Zero(n) : VectorXd(v.head(n));
   };
   text += row("beta", direction(point.impact.beta)) + row("B", direction(point.B));
   return text + fmt::format("a* = {:.12g}{}\n", point.a,
@@ -351,7 +355,7 @@ std::string orbit_report(const HybridSystem& system, const GrazingOrbit& orbit, 
   text += fmt::format(" ({:.1e} from the label).\n\n", orbit.moved);
   const int states = system.dimension_of(orbit.point.field);
   text += "A, the derivative of the smooth return map on P:\n" + names_row(system, states);
-  const double rounding = 1e-12 * orbit.A.cwiseAbs().maxCoeff();
+  const double rounding = level::negligible * orbit.A.cwiseAbs().maxCoeff();
   for (Eigen::Index i = 0; i < states; ++i) {
     VectorXd shown = orbit.A.row(i).head(states).transpose();
     for (double& value : shown)
@@ -359,7 +363,8 @@ std::string orbit_report(const HybridSystem& system, const GrazingOrbit& orbit, 
     text += row(system.state_name(static_cast<int>(i) + 1), shown);
   }
   text += "Eigenvalues: ";
-  const double zero = 1e-11 * std::max(1.0, std::abs(orbit.multipliers(0)));  // the structural zero, as computed
+  // The structural zero, as computed.
+  const double zero = level::converged * std::max(1.0, std::abs(orbit.multipliers(0)));
   for (Eigen::Index i = 0; i < states; ++i) text += (i > 0 ? ", " : "") + complex_text(orbit.multipliers(i), zero);
   text += '\n';
   if (!orbit.point.has_square_root()) return text;
@@ -385,7 +390,7 @@ std::string born_report(const HybridSystem& system, const GrazingOrbit& orbit, c
   const std::string parameter = system.parameter_name(orbit.parameter);
   std::string text =
       fmt::format("Impacting orbits near grazing, one impact in k returns, delta = change of {}:\n", parameter);
-  if (std::abs(born.clearance) <= 1e-9 * orbit.point.event_gradient.norm())
+  if (std::abs(born.clearance) <= level::orbit * born.clearance_terms)
     return text + fmt::format("none to first order: {} does not move the orbit off the surface\n", parameter);
   text += fmt::format("the orbit without contact lives at {} {} {:.8g}.\n", parameter, born.clearance > 0.0 ? '>' : '<',
                       orbit.point.par(orbit.parameter - 1));

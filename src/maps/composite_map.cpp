@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "linear/dense_matrix.hpp"
 #include "maps/invariant_curve.hpp"
@@ -149,7 +150,7 @@ using Eigen::Index;
 
 /// Exponents that are told from zero by so many error bars, and by this much per return.
 constexpr double bars = 3.0;
-constexpr double least_growth = 1e-4;
+constexpr double least_growth = level::visible;
 constexpr long looked_at = 64;         // returns between two looks for a period
 constexpr long first_decision = 2000;  // returns of which exponents are made
 

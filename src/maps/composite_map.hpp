@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/levels.hpp"
 #include "maps/discontinuity_map.hpp"
 #include "maps/smooth_return.hpp"
 #include "maps/torus_return.hpp"
@@ -129,13 +130,13 @@ class EllipseMap : public IteratedMap {
 // What the iterates of a map settle on.
 
 struct MapIteration {
-  long transient = 1000;      ///< returns that are dropped
-  long returns = 1000;        ///< returns that are kept of a motion that does not repeat itself
-  long most_returns = 64000;  ///< that exponents are computed over to tell its kind
-  int max_period = 16;        ///< in returns
-  double recognition = 1e-6;  ///< states that are equal, relative to the range of the iterates
-  double escape = 1.0;        ///< distance from the orbit or torus, in its extents, beyond which the map has no meaning
-  int exponents = 0;          ///< how many are wanted always; without any they are computed to tell a kind
+  long transient = 1000;                ///< returns that are dropped
+  long returns = 1000;                  ///< returns that are kept of a motion that does not repeat itself
+  long most_returns = 64000;            ///< that exponents are computed over to tell its kind
+  int max_period = 16;                  ///< in returns
+  double recognition = level::located;  ///< states that are equal, relative to the range of the iterates
+  double escape = 1.0;  ///< distance from the orbit or torus, in its extents, beyond which the map has no meaning
+  int exponents = 0;    ///< how many are wanted always; without any they are computed to tell a kind
   std::function<bool()> interrupted;
 };
 

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
@@ -109,9 +110,8 @@ struct DiscontinuityMap::Implementation {
   }
 
   void require_crossing() const {
-    constexpr double tangent = 1e-9;
     const double rate = gradient.dot(point.f);
-    if (std::abs(rate) > tangent * gradient.norm() * point.f.norm()) return;
+    if (std::abs(rate) > level::orbit * gradient.norm() * point.f.norm()) return;
     throw UserError(fmt::format(
         "--section: the flow is tangent to the section of {} at the contact, it cannot be P'; choose an event function "
         "or a state that rises or falls there{}",

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
+#include "model/scales.hpp"
 #include "motion/orbit_flow.hpp"
 #include "orbit/ring_system.hpp"
 
@@ -55,14 +57,12 @@ class TurnMap {
  private:
   bool relax() {
     if (options_.method == IntegrationMethod::bdf) return false;
-    if (options_.relative_tolerance < 1e-13) {
-      options_.relative_tolerance = 1e-12;
-      options_.absolute_tolerance = 1e-14;
+    if (options_.relative_tolerance < level::relaxed_flow.relative) {
+      options_.set(level::relaxed_flow);
       return true;
     }
     options_.method = IntegrationMethod::bdf;
-    options_.relative_tolerance = 1e-11;
-    options_.absolute_tolerance = 1e-13;
+    options_.set(level::stiff_flow);
     options_.max_steps = 1000000;
     return true;
   }
@@ -128,6 +128,7 @@ class ContactSearch {
         surface_(system.dimension(), system.parameters()),
         x_(start.x),
         par_(start.par),
+        sizes_(sizes_from_ranges(sizes_at(system, start.contact.field, start.x, start.par))),
         last_(start.durations.back()) {}
 
   GrazingOrbit run() {
@@ -155,14 +156,14 @@ class ContactSearch {
 
   void converge() {
     constexpr int most_iterations = 20;
-    constexpr double converged = 1e-13;
-    constexpr double good_enough = 1e-9;  // where errors of the integration end Newton's method
+    constexpr double converged = level::rounding_of_sums;
+    constexpr double good_enough = level::orbit;  // where errors of the integration end Newton's method
     double before = INFINITY;
     for (int iteration = 0;; ++iteration) {
       evaluate();
       if (before <= converged) return;
       const VectorXd step = newton_step();
-      const double size = step.lpNorm<Eigen::Infinity>() / (1.0 + x_.lpNorm<Eigen::Infinity>());
+      const double size = size_of(step);
       const bool stalls = size >= 0.5 * before;
       if (stalls && before <= good_enough) return;
       if (!std::isfinite(size) || iteration == most_iterations || (stalls && iteration > 5))
@@ -175,6 +176,15 @@ class ContactSearch {
       par_(free()) += step(x_.size() + 1);
       before = size;
     }
+  }
+
+  /// Each state in units of its size at the contact, the duration of the period, the parameter of its own size.
+  double size_of(const VectorXd& step) const {
+    const Eigen::Index n = x_.size();
+    const double period = std::accumulate(start_.durations.begin(), start_.durations.end(), 0.0);
+    const double parameter = system_.parameter_size(start_.parameter, par_(free()));
+    return std::max({step.head(n).cwiseAbs().cwiseQuotient(sizes_.cwiseMax(x_.cwiseAbs())).maxCoeff(),
+                     std::abs(step(n)) / period, std::abs(step(n + 1)) / parameter});
   }
 
   void evaluate() {
@@ -208,7 +218,8 @@ class ContactSearch {
   SurfaceRate surface_;
   VectorXd x_;
   ParameterVector par_;
-  double last_;  // duration of the last segment
+  VectorXd sizes_;  // of the states, where the turn begins
+  double last_;     // duration of the last segment
   Turn turn_;
 };
 
@@ -224,8 +235,7 @@ namespace {
 
 using Kind = GrazingVerdict::Kind;
 
-constexpr double stable = 1e-5;       // as for labels: |mu| <= 1 + 1e-5
-constexpr double xi_rounding = 1e-9;  // of shares in xi_n, of determinants
+constexpr double xi_rounding = level::orbit;  // of shares in xi_n, of determinants
 std::string number(double value) { return fmt::format("{:.6g}", value); }
 
 std::string text(std::complex<double> value) {
@@ -265,7 +275,7 @@ GrazingVerdict by_linear_map(const GrazingOrbit& orbit, const DiscontinuityMap& 
         "there is no square root, and {} < 0 (3.11): the impacting orbit and the one without contact live on the same "
         "side of grazing, and vanish together",
         product);
-  } else if (largest > 1.0 + stable) {
+  } else if (largest > 1.0 + level::on_circle) {
     verdict.reason = fmt::format(
         "there is no square root and {} > 0 (3.12), but the impacting orbit is born unstable: A L has an eigenvalue of "
         "modulus {}",
@@ -374,8 +384,8 @@ MatrixXd linear_contact(const DiscontinuityMap& map) {
 GrazingVerdict grazing_verdict(const GrazingOrbit& orbit, const DiscontinuityMap& map,
                                const std::vector<ImpactReturn>& xi) {
   const std::complex<double> largest = orbit.multipliers(0);
-  if (std::abs(largest) > 1.0 + stable) return unstable(largest);
-  if (std::abs(largest) >= 1.0 - stable)
+  if (std::abs(largest) > 1.0 + level::on_circle) return unstable(largest);
+  if (std::abs(largest) >= 1.0 - level::on_circle)
     return {Kind::unknown, 0,
             fmt::format("the orbit bifurcates without contact as well: A has the eigenvalue {}, of modulus 1",
                         text(largest))};
@@ -384,7 +394,7 @@ GrazingVerdict grazing_verdict(const GrazingOrbit& orbit, const DiscontinuityMap
 
 namespace {
 
-constexpr double none = 1e-9;  // of the sizes of what is summed: zero to rounding
+constexpr double none = level::orbit;  // of the sizes of what is summed: zero to rounding
 
 /// What both kinds of map need: A, b, h_x, h_p of one parameter.
 struct LinearReturn {
@@ -469,7 +479,9 @@ BornOrbits born_orbits(const HybridSystem& system, const GrazingOrbit& orbit, co
   const Eigen::Index n = orbit.A.rows();
   BornOrbits result;
   result.has_square_root = orbit.point.has_square_root();
-  result.clearance = smooth.hx.dot(solve(MatrixXd::Identity(n, n) - smooth.A, smooth.b).col(0)) + smooth.hp;
+  const VectorXd moved = solve(MatrixXd::Identity(n, n) - smooth.A, smooth.b).col(0);
+  result.clearance = smooth.hx.dot(moved) + smooth.hp;
+  result.clearance_terms = smooth.hx.cwiseAbs().dot(moved.cwiseAbs()) + std::abs(smooth.hp);
   for (int k = 1; k <= most; ++k)
     result.orbits.push_back(result.has_square_root ? with_square_root(orbit.point, smooth, result.clearance, k)
                                                    : without_square_root(orbit, map, smooth, result.clearance, k));

@@ -113,6 +113,7 @@ struct BornOrbits {
   bool has_square_root = true;
   /// q: d h_D / d delta of the orbit without contact, at its least.
   double clearance = 0.0;
+  double clearance_terms = 0.0;   ///< sum of the moduli that q is made of
   std::vector<BornOrbit> orbits;  ///< k = 1, 2, ...
 };
 

@@ -7,9 +7,11 @@
 #include <cmath>
 #include <limits>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
+#include "model/scales.hpp"
 
 namespace tchat {
 
@@ -19,11 +21,11 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Of states and of |h_x| |x|: what is left of h_D and h_P at a state that has been corrected, with room to spare.
-constexpr double on_surfaces = 1e-9;
+constexpr double on_surfaces = level::orbit;
 /// Of |h_{P,x}| |f|: an a* below this is zero.
-constexpr double no_minimum = 1e-9;
+constexpr double no_minimum = level::orbit;
 /// Of the sizes of what is compared.
-constexpr double same_state = 1e-8;
+constexpr double same_state = level::differences;
 
 std::string named(const HybridSystem& system, FunctionKind kind, int index) {
   const char* const word = kind == FunctionKind::event ? "event" : kind == FunctionKind::jump ? "jump" : "field";
@@ -37,10 +39,14 @@ MatrixXd identity_of(const HybridSystem& system, int field) {
   return unit;
 }
 
+VectorXd sizes_of(const HybridSystem& system, const GrazingPoint& at) {
+  return sizes_at(system, at.field, at.x, at.par);
+}
+
 /// The jump is the identity where h_D = h_P = 0: at x*, and to first order beside it.
 void require_identity_at_contact(const HybridSystem& system, const GrazingPoint& at, const VectorXd& after,
                                  const MatrixXd& gx, const std::string& source) {
-  const double moved = (after - at.x).lpNorm<Eigen::Infinity>();
+  const double moved = length_in_sizes(after - at.x, sizes_of(system, at));
   const Eigen::Index n = at.x.size();
   MatrixXd rows(2, n);
   rows.row(0) = at.event_gradient.normalized().transpose();
@@ -49,14 +55,12 @@ void require_identity_at_contact(const HybridSystem& system, const GrazingPoint&
   // (g_x - Id) t = 0 for t with h_{D,x} t = h_{P,x} t = 0: each row of g_x - Id is a sum of the two gradients.
   const MatrixXd shares = least_squares(rows.transpose(), change.transpose());
   const double beside = (change.transpose() - rows.transpose() * shares).lpNorm<Eigen::Infinity>();
-  if (moved <= same_state * (1.0 + at.x.lpNorm<Eigen::Infinity>()) &&
-      beside <= 1e-6 * (1.0 + gx.lpNorm<Eigen::Infinity>()))
-    return;
-  throw UserError(fmt::format(
-      "{}: {} changes states in grazing contact (by {:.2g}): the discontinuity map belongs to jumps that leave them as "
-      "they are, as an impact of velocity zero does; name another one with --jump",
-      source, named(system, FunctionKind::jump, at.jump),
-      moved > same_state * (1.0 + at.x.lpNorm<Eigen::Infinity>()) ? moved : beside));
+  if (moved <= same_state && beside <= level::located * (1.0 + gx.lpNorm<Eigen::Infinity>())) return;
+  throw UserError(
+      fmt::format("{}: {} changes states in grazing contact (by {:.2g} of their sizes): the discontinuity map belongs "
+                  "to jumps that leave them as they are, as an impact of velocity zero does; name another one with "
+                  "--jump",
+                  source, named(system, FunctionKind::jump, at.jump), moved > same_state ? moved : beside));
 }
 
 /// g_x (Id - f h_x / (h_x f)) of a segment of no duration at x*.
@@ -65,8 +69,9 @@ MatrixXd short_segment(const HybridSystem& system, const IndexVector& v, const G
   const Eigen::Index n = at.x.size();
   const EventAt event = event_at(system, v.event, v.field, at.x.data(), at.par.data());
   const auto [after, gx] = jump_at(system, v.jump, at.x.data(), at.par.data());
-  const bool is_empty = std::abs(event.h) <= on_surfaces * event.scale(at.x.data()) &&
-                        (after - at.x).lpNorm<Eigen::Infinity>() <= same_state * (1.0 + at.x.norm());
+  const VectorXd sizes = sizes_of(system, at);
+  const bool is_empty = std::abs(event.h) <= on_surfaces * event.scale(at.x.data(), sizes) &&
+                        length_in_sizes(after - at.x, sizes) <= same_state;
   if (!is_empty || !(std::abs(event.rate()) > no_minimum * event.sizes()))
     throw UserError(fmt::format(
         "{}: after an impact of velocity zero segment {} ({}) follows, which {}: the discontinuity map belongs to "
@@ -103,9 +108,10 @@ void require_minimum(const HybridSystem& system, const GrazingPoint& at, const s
 
 void require_on_surfaces(const HybridSystem& system, const GrazingPoint& at, double h, double rate,
                          const std::string& source) {
-  const double scale = 1.0 + at.event_gradient.norm() * at.x.norm();
-  const double speed = at.event_gradient.norm() * at.f.norm();
-  if (std::abs(h) <= on_surfaces * scale && std::abs(rate) <= on_surfaces * (1.0 + speed)) return;
+  const VectorXd sizes = sizes_of(system, at);
+  const double of_h = surface_scale(at.event_gradient, at.x.data(), sizes);
+  const double of_rate = surface_scale(at.section_gradient, at.x.data(), sizes);
+  if (std::abs(h) <= on_surfaces * of_h && std::abs(rate) <= on_surfaces * of_rate) return;
   throw UserError(fmt::format(
       "{}: the state is no grazing point of {}: h_D = {:.3e}, h_P = h_{{D,x}} f = {:.3e}, and both must be zero; "
       "--correct takes the nearest state where they are",
@@ -149,7 +155,7 @@ GrazingPoint grazing_point(const HybridSystem& system, int field, int event, int
 VectorXd corrected_contact(const HybridSystem& system, int field, int event, const VectorXd& x0,
                            const ParameterVector& par, const std::string& source) {
   constexpr int most_iterations = 30;
-  constexpr double small = 1e-15;
+  constexpr double small = std::numeric_limits<double>::epsilon();
   VectorXd x = x0;
   SurfaceRate surface(system.dimension(), 0);
   MatrixXd rows(2, x.size());
@@ -160,10 +166,10 @@ VectorXd corrected_contact(const HybridSystem& system, int field, int event, con
     rows.row(1) = surface.rate_x.transpose();
     const VectorXd step = least_squares(rows, -Eigen::Vector2d(surface.h, surface.rate));
     x += step;
-    const double size = step.norm() / (1.0 + x.norm());
-    if (!std::isfinite(size)) break;
-    if (size <= small || (size <= 1e-12 && size >= 0.5 * last)) return x;
-    last = size;
+    const double moved = step.norm(), size = std::max(x.norm(), x0.norm());
+    if (!std::isfinite(moved)) break;
+    if (moved <= small * size || (moved <= level::negligible * size && moved >= 0.5 * last)) return x;
+    last = moved;
   }
   throw UserError(
       fmt::format("{}: Newton's method finds no state with h_D = h_P = 0 of {} near this one; give a "
@@ -176,7 +182,7 @@ namespace {
 using State = std::vector<double>;
 
 constexpr double rounding = std::numeric_limits<double>::epsilon();
-constexpr double stalled = 1e-12;  // Newton's steps that are no longer halved stop at this share of the time
+constexpr double stalled = level::negligible;  // of the time: Newton's steps that are no longer halved stop there
 
 /// The integral over s from 0 to 1 of `gradient(s d)` . d, or of a matrix times d: what a function changes from x* to
 /// x* + d.
@@ -324,7 +330,7 @@ void LocalFlow::slopes(const Motion& motion, const State& z, State& out) {
 /// Steps of equal length, halved until the embedded error estimate of each is at rounding level.
 bool LocalFlow::follow(Motion& motion, double time) {
   constexpr double accuracy = 8.0 * rounding;
-  constexpr double variational_accuracy = 1e-13;
+  constexpr double variational_accuracy = level::rounding_of_sums;
   constexpr double most_steps = 65536.0;
   if (time == 0.0) return true;
   if (!std::isfinite(time)) return false;

@@ -8,12 +8,14 @@
 #include <cmath>
 #include <string_view>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "base/text_file.hpp"
 #include "base/words.hpp"
 #include "files/point_file.hpp"
 #include "files/solution_file_reader.hpp"
 #include "model/events.hpp"
+#include "model/scales.hpp"
 #include "resegment/contact_point.hpp"
 #include "resegment/orbit_pieces.hpp"
 #include "resegment/signature_match.hpp"
@@ -28,7 +30,7 @@ namespace {
 using Eigen::VectorXd;
 
 /// Of the period: segments that last less are those of an impact of velocity zero.
-constexpr double no_time = 1e-7;
+constexpr double no_time = level::tolerance;
 
 Orbit orbit_at(const LabelledSolution& solution, const RunSettings& settings, const HybridSystem& system,
                const std::string& source) {
@@ -155,13 +157,14 @@ CrossSection cross_section(const HybridSystem& system, const std::string& text) 
 
 std::optional<CrossSection> own_section(const RunSettings& settings, const HybridSystem& system,
                                         const GrazingPoint& point) {
-  constexpr double on_it = 1e-6;
-  constexpr double parallel = 1e-9;
+  constexpr double on_it = level::located;
+  const VectorXd sizes = sizes_at(system, point.field, point.x, point.par);
+  constexpr double parallel = level::orbit;
   for (const SegmentSettings& segment : settings.segments) {
     const int j = segment.index.event;
     if (j == no_function || j == point.event || !is_identity_jump(system, segment.index)) continue;
     const EventAt at = event_at(system, j, point.field, point.x.data(), point.par.data());
-    if (std::abs(at.h) > on_it * at.scale(point.x.data()) || std::abs(at.rate()) <= on_it * at.sizes()) continue;
+    if (std::abs(at.h) > on_it * at.scale(point.x.data(), sizes) || std::abs(at.rate()) <= on_it * at.sizes()) continue;
     const double cosine =
         at.gradient.dot(point.section_gradient) / (at.gradient.norm() * point.section_gradient.norm());
     if (1.0 - std::abs(cosine) > parallel) return CrossSection{j, 0};

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <complex>
 #include <functional>
+#include <limits>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "linear/dense_matrix.hpp"
+#include "model/scales.hpp"
 
 namespace tchat {
 
@@ -82,14 +85,16 @@ VectorXd turning_angles(const MatrixXd& points) {
   const VectorXd high = points.rowwise().maxCoeff();
   const VectorXd extent = high - low;
   const VectorXd centre = 0.5 * (low + high);
+  const VectorXd size = sizes_from_ranges(low.cwiseAbs().cwiseMax(high.cwiseAbs()));
   // The pair of states whose covariance matrix, each by its extent, is farthest from singular.
   Index best_a = 0, best_b = 1;
   double best = -1.0;
-  const MatrixXd scaled = extent.cwiseMax(1e-300).cwiseInverse().asDiagonal() * (points.colwise() - centre);
+  const MatrixXd scaled =
+      extent.cwiseMax(std::numeric_limits<double>::min()).cwiseInverse().asDiagonal() * (points.colwise() - centre);
   const MatrixXd covariance = scaled * scaled.transpose() / static_cast<double>(points.cols());
   for (Index a = 0; a < points.rows(); ++a)
     for (Index b = a + 1; b < points.rows(); ++b) {
-      if (!(extent(a) > 1e-9 * (1.0 + std::abs(centre(a))) && extent(b) > 1e-9 * (1.0 + std::abs(centre(b))))) continue;
+      if (!(extent(a) > level::orbit * size(a) && extent(b) > level::orbit * size(b))) continue;
       const double determinant = covariance(a, a) * covariance(b, b) - covariance(a, b) * covariance(a, b);
       if (determinant <= best) continue;
       best = determinant;
@@ -133,10 +138,9 @@ struct Return {
 Return repetition(const MatrixXd& points, const std::vector<Index>& angles) {
   constexpr Index most = 64;
   // Simulations are known to so much; a torus comes back so close after so few points in a resonance alone.
-  constexpr double rounding = 1e-7, near = 1e-4, settling = 1e-3;
+  constexpr double rounding = level::tolerance, near = level::visible, settling = 1e-3;
   const Index quarter = points.cols() / 4;
-  VectorXd size = points.cwiseAbs().rowwise().maxCoeff();
-  size = size.cwiseMax(1e-3 * size.maxCoeff()).cwiseMax(1e-300);
+  const VectorXd size = sizes_from_ranges(points.cwiseAbs().rowwise().maxCoeff());
   for (Index q = 1; q <= std::min(most, quarter); ++q) {
     const auto largest = [&](Index begin, Index end) {
       double distance = 0.0;
@@ -263,7 +267,7 @@ CurveFit best_fit(const MatrixXd& points, const PointSequence& sequence, const V
   for (int harmonics = 8; harmonics <= most; harmonics *= 2) {
     const CurveFit more(points, sequence, scale, best.rotation, harmonics);
     if (!(more.total < best.total)) break;
-    const bool is_worth_it = more.total < 0.25 * best.total || more.largest > 1e-4;
+    const bool is_worth_it = more.total < 0.25 * best.total || more.largest > level::visible;
     best = more;
     if (!is_worth_it) break;
   }
@@ -273,8 +277,7 @@ CurveFit best_fit(const MatrixXd& points, const PointSequence& sequence, const V
 VectorXd extents(const MatrixXd& points, const std::vector<Index>& angles) {
   VectorXd extent = points.rowwise().maxCoeff() - points.rowwise().minCoeff();
   for (const Index i : angles) extent(i) = full_turn;
-  const double largest = extent.maxCoeff();
-  return extent.cwiseMax(1e-3 * largest);
+  return sizes_from_ranges(extent);
 }
 
 }  // namespace
@@ -440,7 +443,7 @@ double CurveProjection::phase(const VectorXd& x) const {
     const double step = std::clamp(-residual(x, phi) / slope(x, phi), -reach, reach);
     if (!std::isfinite(step)) break;
     phi += step;
-    if (std::abs(step) < 1e-13) break;
+    if (std::abs(step) < level::rounding_of_sums) break;
   }
   return phase_fraction(phi);
 }

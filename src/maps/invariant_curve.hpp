@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "base/levels.hpp"
+
 namespace tchat {
 
 // The circle, in turns and in radians.
@@ -79,7 +81,7 @@ class InvariantCurve {
 struct CurveSettings {
   std::vector<Eigen::Index> angles;  ///< states, from 0, that count modulo 2 pi
   int max_harmonics = 256;
-  double tolerance = 1e-6;  ///< of the fit, relative to the extent of the curve
+  double tolerance = level::located;  ///< of the fit, relative to the extent of the curve
 };
 
 struct FittedCurve {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "files/run_files.hpp"
 #include "files/solution_file_reader.hpp"
@@ -15,6 +16,7 @@
 #include "maps/invariant_curve.hpp"
 #include "maps/smooth_return.hpp"
 #include "model/events.hpp"
+#include "model/scales.hpp"
 #include "motion/hybrid_simulation.hpp"
 #include "plugin/problem_setup.hpp"
 #include "resegment/signature_match.hpp"
@@ -32,7 +34,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 /// Points of an event function lie on P where h_P is this small beside its sizes.
-constexpr double on_p = 1e-6;
+constexpr double on_p = level::located;
 /// An angle that varies less than this on a section is constant there.
 constexpr double constant_angle = 1e-3;
 constexpr double torus_neighbourhood = 0.25;
@@ -66,8 +68,9 @@ IndexVector free_return(const HybridSystem& system, const GrazingPoint& point,
     }
     const EventAt at = event_at(system, index.event, point.x.data(), point.par.data());
     const double sizes = at.gradient.norm() * point.section_gradient.norm();
-    if (std::abs(at.h) <= on_p * at.scale(point.x.data()) &&
-        std::abs(at.gradient.dot(point.section_gradient)) >= (1.0 - 1e-9) * sizes)
+    const VectorXd of_states = sizes_at(system, point.field, point.x, point.par);
+    if (std::abs(at.h) <= on_p * at.scale(point.x.data(), of_states) &&
+        std::abs(at.gradient.dot(point.section_gradient)) >= (1.0 - level::orbit) * sizes)
       return index;
   }
   return {point.field, section ? section->event : no_function, no_function};
@@ -135,7 +138,9 @@ MapModel periodic_model(const MapRequest& request, const MapContext& context, co
   if (model.section && model.section->event > 0) {
     const EventAt at =
         event_at(system, model.section->event, model.point.field, model.point.x.data(), model.point.par.data());
-    if (std::abs(at.rate()) > on_p * at.sizes() && std::abs(at.h) > on_p * at.scale(model.point.x.data()))
+    if (std::abs(at.rate()) > on_p * at.sizes() &&
+        std::abs(at.h) >
+            on_p * at.scale(model.point.x.data(), sizes_at(system, model.point.field, model.point.x, model.point.par)))
       throw UserError(
           fmt::format("--section {}: event function {} is {:.6g} at the grazing point x* = {}: the section must "
                       "pass through it; name a state instead, whose value at x* makes the section",
@@ -146,7 +151,7 @@ MapModel periodic_model(const MapRequest& request, const MapContext& context, co
                       "where functions fall: name a state instead",
                       *context.section, model.section->event, numbers(model.point.x)));
     if (std::abs(at.gradient.dot(model.point.section_gradient)) >=
-        (1.0 - 1e-9) * at.gradient.norm() * model.point.section_gradient.norm())
+        (1.0 - level::orbit) * at.gradient.norm() * model.point.section_gradient.norm())
       model.section.reset();
   }
   const auto suspended =
@@ -176,11 +181,11 @@ std::vector<Index> angle_states(const HybridSystem& system, const VectorXd& x, c
     system.value(FunctionKind::jump, k, x.data(), par.data(), g.data());
     const VectorXd moved = g - x;
     Index state = 0;
-    if (std::abs(moved.cwiseAbs().maxCoeff(&state) - full_turn) > 1e-9) continue;
+    if (std::abs(moved.cwiseAbs().maxCoeff(&state) - full_turn) > level::orbit) continue;
     VectorXd rest = moved;
     rest(state) = 0.0;
-    if (rest.cwiseAbs().maxCoeff() < 1e-9 && std::find(angles.begin(), angles.end(), state) == angles.end())
-      angles.push_back(state);
+    const bool others_stay = (rest.array().abs() <= level::orbit * x.array().abs()).all();
+    if (others_stay && std::find(angles.begin(), angles.end(), state) == angles.end()) angles.push_back(state);
   }
   return angles;
 }
@@ -214,7 +219,7 @@ int wall_of(const MapRequest& request, const HybridSystem& system, const VectorX
        system.successors({0, 0, 0}, x.data(), par.data()).value_or(std::vector<IndexVector>{})) {
     VectorXd g(x.size());
     system.value(FunctionKind::jump, index.jump, x.data(), par.data(), g.data());
-    const bool turns = std::abs((g - x).cwiseAbs().maxCoeff() - full_turn) < 1e-9;
+    const bool turns = std::abs((g - x).cwiseAbs().maxCoeff() - full_turn) < level::orbit;
     if (!is_identity_jump(system, index) && !turns && std::find(walls.begin(), walls.end(), index.event) == walls.end())
       walls.push_back(index.event);
   }

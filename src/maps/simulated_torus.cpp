@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "files/auto_format.hpp"
 #include "files/dat_file.hpp"
@@ -107,9 +108,8 @@ Orbit orbits_from_curve(const HybridSystem& system, const Signature& one_return,
   Orbit x{shape, uniform_mesh(intervals), Eigen::MatrixXd(shape.dimension, shape.columns()), par};
   x.par.rotation() = curve.rotation();
   FlowOptions options;
-  options.relative_tolerance = 1e-12;
-  options.absolute_tolerance = 1e-13;
-  options.surface_tolerance = 1e-5;  // the fitted curve is on the section to the accuracy of the fit
+  options.set(level::relaxed_flow);
+  options.surface_tolerance = level::same;  // the fitted curve is on the section to the accuracy of the fit
   options.variational = false;
   for (int i = 0; i < orbits; ++i) {
     Eigen::VectorXd state = curve.at(static_cast<double>(i) / orbits);

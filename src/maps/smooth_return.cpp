@@ -7,8 +7,10 @@
 #include <cmath>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "model/events.hpp"
+#include "model/scales.hpp"
 #include "motion/cvodes_flow.hpp"
 #include "motion/hybrid_simulation.hpp"
 #include "motion/orbit_flow.hpp"
@@ -167,7 +169,8 @@ Second second_of_flow(const HybridSystem& system, int field, const VectorXd& z, 
   namespace odeint = boost::numeric::odeint;
   const SecondVariation equations(system, field, par);
   SecondVariation::State y = equations.start(z);
-  const auto stepper = odeint::make_controlled(1e-13, 1e-13, odeint::runge_kutta_fehlberg78<SecondVariation::State>());
+  const auto stepper = odeint::make_controlled(level::reference_flow.absolute, level::reference_flow.relative,
+                                               odeint::runge_kutta_fehlberg78<SecondVariation::State>());
   odeint::integrate_adaptive(stepper, equations, y, 0.0, duration, 0.01 * duration);
   return equations.second(y);
 }
@@ -252,8 +255,8 @@ QuadraticMap smooth_return(const HybridSystem& system, const Signature& path, co
     const SegmentFlow flow = integrate_segment(system, path[s], start, par, options);
     if (flow.status != FlowStatus::event_reached)
       throw ComputationError(fmt::format("segment {} of the return to the section: {}", s + 1, flow.message));
-    const double sizes = flow.end_state.size() == 0 ? 0.0 : std::abs(flow.event_velocity);
-    if (!(sizes > 1e-12))
+    const EventAt met = event_at(system, path[s].event, path[s].field, flow.end_state.data(), par.data());
+    if (!(std::abs(met.rate()) > level::negligible * met.sizes()))
       throw ComputationError(
           fmt::format("segment {} of the return to the section meets {} tangentially, the map has "
                       "no derivative there",
@@ -276,9 +279,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double closure = 1e-5;  // of the turn, relative to the orbit's extent
-
-VectorXd floored(const VectorXd& extent) { return extent.cwiseMax(1e-3 * extent.maxCoeff()); }
+constexpr double closure = level::same;  // of the turn, relative to the orbit's extent
 
 double scaled_distance(const VectorXd& d, const VectorXd& scale) {
   return d.cwiseQuotient(scale).cwiseAbs().maxCoeff();
@@ -293,7 +294,7 @@ int crossings_before(const SuspendedSystem& suspended, const IndexVector& index,
   flow.watch({section});
   int crossings = 0;
   // x* itself is met within the errors of `duration`, and does not count.
-  while (flow.advance(duration * (1.0 - 1e-6)) == Progress::root) ++crossings;
+  while (flow.advance(duration * (1.0 - level::located)) == Progress::root) ++crossings;
   return crossings;
 }
 
@@ -301,7 +302,7 @@ int crossings_before(const SuspendedSystem& suspended, const IndexVector& index,
 
 PeriodicReturn::PeriodicReturn(std::shared_ptr<const SuspendedSystem> suspended, const GrazingTurn& turn, int section,
                                int order, const FlowOptions& options)
-    : suspended_(std::move(suspended)), extent_(floored(turn.extent)) {
+    : suspended_(std::move(suspended)), extent_(sizes_from_ranges(turn.extent)) {
   const HybridSystem& system = suspended_->system();
   const VectorXd start = suspended_->suspended(turn.x, turn.par);
   FlowOptions waiting = options;

@@ -8,8 +8,10 @@
 #include <optional>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "model/events.hpp"
+#include "model/scales.hpp"
 #include "motion/hybrid_simulation.hpp"
 #include "motion/orbit_flow.hpp"
 #include "run/orbit_start.hpp"
@@ -24,7 +26,7 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-constexpr double largest_defect = 1e-4;
+constexpr double largest_defect = level::five_digits;
 constexpr double largest_interpolation_error = 1e-3;
 
 /// Angles between 0 and 2 pi.
@@ -103,7 +105,7 @@ TorusReturn::TorusReturn(std::shared_ptr<const SuspendedSystem> suspended, Invar
       curve_(std::move(curve)),
       projection_(std::move(projection)),
       par_(par),
-      scale_(curve_.extent().cwiseMax(1e-3 * curve_.extent().maxCoeff())) {
+      scale_(sizes_from_ranges(curve_.extent())) {
   parameters_along_ = suspended_->suspended(curve_.at(0.0), par).tail(suspended_->system().dimension() - dimension());
   // As many as the curve has harmonics is a good guess.
   const int first_count = std::clamp(2 * (curve_.harmonics() / 2), 64, settings.most_nodes);
@@ -115,7 +117,7 @@ TorusReturn::TorusReturn(std::shared_ptr<const SuspendedSystem> suspended, Invar
     second_ = TrigonometricSeries::through(nodes.second);
     times_ = TrigonometricSeries::through(nodes.times);
     defect_ = nodes.defect;
-    depends_ = nodes.by_parameters > 1e-10;
+    depends_ = nodes.by_parameters > level::converged;
     mean_time_ = nodes.times.mean();
     interpolation_error_ = std::max(tail_of(first_), settings.order > 1 ? tail_of(second_) : 0.0);
     if (interpolation_error_ <= settings.accuracy) return;
@@ -231,7 +233,7 @@ class LeastDistance {
     for (int iteration = 0; iteration < 10; ++iteration) {
       const Surface now = surface(least.x);
       const double step = -now.rate / now.a;
-      if (std::abs(step) <= 1e-14 * torus_.mean_time()) break;
+      if (std::abs(step) <= level::rounding * torus_.mean_time()) break;
       least.time += step;
       FlowOptions options;
       const SegmentFlow moved = integrate_for(system_, field_, start, torus_.parameters(), least.time, options);
@@ -287,7 +289,7 @@ TorusGrazing torus_grazing(const HybridSystem& system, const TorusReturn& torus,
                     "seen; put the section there",
                     source, wall, wall_name, least_h, state_text(distance.at(guess).x)));
   Least best = distance.at(guess);
-  for (int iteration = 0; iteration < 60 && std::abs(high - low) > 1e-14; ++iteration) {
+  for (int iteration = 0; iteration < 60 && std::abs(high - low) > level::rounding; ++iteration) {
     // Regula falsi, with a bisection every third time.
     const double share = iteration % 3 == 2 ? 0.5 : at_low.slope / (at_low.slope - at_high.slope);
     best = distance.at(low + share * (high - low));
@@ -307,14 +309,16 @@ TorusGrazing torus_grazing(const HybridSystem& system, const TorusReturn& torus,
     double h = 0.0, hp = 0.0;
     VectorXd hx(grazing.x.size());
     system.first(FunctionKind::event, wall, grazing.x.data(), grazing.par.data(), active, &h, hx.data(), &hp);
-    if (!(std::abs(hp) > 1e-12))
+    const double known = system.parameter_size(parameter, grazing.par(parameter - 1));
+    const double scale = surface_scale(hx, grazing.x.data(), torus.extent());
+    if (!(std::abs(hp) * known > level::negligible * scale))
       throw UserError(
           fmt::format("{}: event {} ({}) does not depend on {}, so that it cannot bring the wall to the torus; "
                       "sweep a parameter of the wall, or give the torus in contact",
                       source, wall, wall_name, system.parameter_name(parameter)));
     const double step = -h / hp;
     grazing.par(parameter - 1) += step;
-    if (std::abs(step) <= 1e-15 * (1.0 + std::abs(grazing.par(parameter - 1)))) break;
+    if (std::abs(step) <= std::numeric_limits<double>::epsilon() * known) break;
   }
   return grazing;
 }
@@ -375,11 +379,11 @@ TorusLabel::TorusLabel(const HybridSystem& system, const LabelledSolution& solut
 /// From the mesh point before it, by the flow, the time corrected by Newton's method.
 VectorXd TorusLabel::on_p(int wall, int field, const VectorXd& from, double duration) const {
   FlowOptions options;
-  options.relative_tolerance = 1e-13;
-  options.absolute_tolerance = 1e-14;
+  options.set(level::reference_flow);
   options.variational = false;
   VectorXd x = from;
   constexpr int most_corrections = 6;
+  const double longest = orbit_.par.durations(orbit_.shape.segments).cwiseAbs().maxCoeff();
   for (int k = 0; k < most_corrections; ++k) {
     const SegmentFlow flow = integrate_for(system_, field, from, orbit_.par, duration, options);
     if (flow.status == FlowStatus::failed)
@@ -388,7 +392,7 @@ VectorXd TorusLabel::on_p(int wall, int field, const VectorXd& from, double dura
     const EventAt at = event_at(system_, wall, field, x.data(), orbit_.par.data());
     const double step = -at.rate() / rate_gradient(system_, at, wall, field, x.data(), orbit_.par.data()).dot(at.f);
     duration += step;
-    if (std::abs(step) <= 1e-13 * (1.0 + std::abs(duration))) break;
+    if (std::abs(step) <= level::rounding_of_sums * longest) break;
   }
   return x;
 }

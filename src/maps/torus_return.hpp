@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/levels.hpp"
 #include "files/solution_file.hpp"
 #include "maps/invariant_curve.hpp"
 #include "maps/smooth_return.hpp"
@@ -29,11 +30,14 @@ namespace tchat {
 // zero to rounding, and so is the torus's dependence on it.
 
 struct TorusSettings {
-  int order = 1;           ///< or 2
-  int most_nodes = 1024;   ///< phases at which derivatives are computed: doubled up to this,
-  double accuracy = 1e-7;  ///< until the highest harmonics are so small beside the largest
+  int order = 1;                       ///< or 2
+  int most_nodes = 1024;               ///< phases at which derivatives are computed: doubled up to this,
+  double accuracy = level::tolerance;  ///< until the highest harmonics are so small beside the largest
   /// Points of the curve lie on the section to the accuracy of the simulation alone.
-  FlowOptions flow{.relative_tolerance = 1e-13, .absolute_tolerance = 1e-14, .surface_tolerance = 1e-5, .active = {}};
+  FlowOptions flow{.relative_tolerance = level::reference_flow.relative,
+                   .absolute_tolerance = level::reference_flow.absolute,
+                   .surface_tolerance = level::same,
+                   .active = {}};
 };
 
 class TorusReturn : public SmoothMap {

@@ -9,6 +9,8 @@
 #include <numeric>
 #include <utility>
 
+#include "base/levels.hpp"
+
 namespace tchat {
 
 namespace {
@@ -16,8 +18,8 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double trust_factor = 20.0;        // on the error estimate of the differences
-constexpr double relative_tolerance = 1e-8;  // of a function's scale
+constexpr double trust_factor = 20.0;                      // on the error estimate of the differences
+constexpr double relative_tolerance = level::differences;  // of a function's scale
 
 }  // namespace
 

@@ -10,6 +10,7 @@
 #include <random>
 #include <set>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "model/checked_function.hpp"
 #include "model/function_values.hpp"
@@ -22,7 +23,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double boundary_tolerance = 1e-6;  // of the derivatives' scale; differences are good to about 1e-9
+constexpr double boundary_tolerance = level::located;  // of the derivatives' scale; differences are good to about 1e-9
 constexpr std::size_t most_listed = 5;
 
 }  // namespace
@@ -90,10 +91,10 @@ std::string to_text(const BoundaryCheck& check) {
 
 namespace {
 
-constexpr double consistency_factor = 1e-11;   // between two exact evaluations
-constexpr int guard = 16;                      // entries of room behind arguments and outputs
-constexpr double untouched = -7.25e77;         // what the room behind the outputs holds
-constexpr int most_faults = 10;                // wrong entries of one function that are listed
+constexpr double consistency_factor = level::converged;  // between two exact evaluations
+constexpr int guard = 16;                                // entries of room behind arguments and outputs
+constexpr double untouched = -7.25e77;                   // what the room behind the outputs holds
+constexpr int most_faults = 10;                          // wrong entries of one function that are listed
 constexpr int most_parameters_of_second = 60;  // of more a random choice: every one costs as many evaluations again
 constexpr int many_variables = 16;             // from here on random directions instead of every variable
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "base/levels.hpp"
 #include "model/parameter_vector.hpp"
 
 namespace tchat {
@@ -73,7 +74,7 @@ bool leaves_states(const HybridSystem& system, int k, int states) {
   for (int trial = 0; trial < 2; ++trial) {
     for (int i = 0; i < states; ++i) x(i) = std::sin(1.3 + i + 2.1 * trial);
     system.value(FunctionKind::jump, k, x.data(), par.data(), g.data());
-    if (!((g - x).cwiseAbs().maxCoeff() <= 1e-12)) return false;
+    if (!((g - x).cwiseAbs().maxCoeff() <= level::negligible)) return false;
   }
   return true;
 }
@@ -143,7 +144,7 @@ bool is_on_surface(const HybridSystem& system, const tchat_sliding& mode, const 
 
 namespace {
 
-constexpr double rounding = 1e-10;  // of states and event functions, after Newton's method
+constexpr double rounding = level::converged;  // of states and event functions, after Newton's method
 
 ParameterVector generic_parameters(const HybridSystem& system) {
   ParameterVector par(system.layout());
@@ -161,7 +162,7 @@ std::optional<Eigen::VectorXd> state_on_surface(const HybridSystem& system, int 
     const EventAt at = event_at(system, event, field, x.data(), par.data());
     const double square = at.gradient.squaredNorm();
     if (!std::isfinite(at.h) || !std::isfinite(square) || square == 0.0) return std::nullopt;
-    if (std::abs(at.h) <= 1e-3 * rounding * at.scale(x.data())) return x;
+    if (std::abs(at.h) <= level::rounding_of_sums * at.scale(x.data())) return x;
     x -= at.h / square * at.gradient;
   }
   return std::nullopt;

@@ -9,6 +9,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "base/levels.hpp"
+
 namespace tchat {
 
 namespace {
@@ -271,7 +273,7 @@ constexpr int step_sizes = 4;
 
 /// Relative errors of a function's values, generously: one that is computed, one that is a difference itself.
 constexpr double computed = 1e3 * std::numeric_limits<double>::epsilon();
-constexpr double differenced = 1e-8;
+constexpr double differenced = level::differences;
 
 /// A copy of the point that differences may move.
 struct MovablePoint {
@@ -311,7 +313,7 @@ bool difference_with_step(const Function& phi, double error, double h, int rows,
     const double sixth = (45.0 * odd[0][i] - 9.0 * odd[1][i] + odd[2][i]) / (60.0 * h);
     const double fourth = (8.0 * odd[0][i] - odd[1][i]) / (12.0 * h);
     derivative[i] = sixth;
-    agrees = agrees && std::abs(sixth - fourth) <= 1e-7 * std::abs(sixth) + error * size[i] / h;
+    agrees = agrees && std::abs(sixth - fourth) <= level::tolerance * std::abs(sixth) + error * size[i] / h;
   }
   return agrees;
 }

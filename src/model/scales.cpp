@@ -127,6 +127,18 @@ double size_for_tolerance(double size) {
   return size > 0.0 ? std::clamp(size, least, 1.0) : 1.0;
 }
 
+Eigen::VectorXd sizes_from_ranges(const Eigen::VectorXd& ranges) {
+  constexpr double hardly = 1e-3;  // of the largest range
+  return ranges.cwiseMax(std::max(hardly * ranges.maxCoeff(), std::numeric_limits<double>::min()));
+}
+
+double length_in_sizes(const Eigen::VectorXd& d, const Eigen::VectorXd& sizes) {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < d.size(); ++i)
+    if (d(i) != 0.0) sum += std::pow(d(i) / sizes(i), 2);
+  return std::sqrt(sum);
+}
+
 Eigen::VectorXd units_of(const Eigen::VectorXd& sizes) {
   if (are_usual(sizes)) return Eigen::VectorXd::Ones(sizes.size());
   return sizes.unaryExpr([](double size) { return std::exp2(std::round(std::log2(size))); });

@@ -73,6 +73,12 @@ bool are_usual(const Eigen::VectorXd& sizes);
 /// this size: not more than 1, nor nothing; 1 where the size is 0, not known.
 double size_for_tolerance(double size);
 
+/// Sizes of differences of states that range so far: one that hardly moves is compared on the scale of the others.
+Eigen::VectorXd sizes_from_ranges(const Eigen::VectorXd& ranges);
+
+/// |d| of a change d of states, each in units of its size: infinite where one without a size changes.
+double length_in_sizes(const Eigen::VectorXd& d, const Eigen::VectorXd& sizes);
+
 /// Powers of two next to `sizes`, multiplication by which is exact; all 1 where they are usual.
 Eigen::VectorXd units_of(const Eigen::VectorXd& sizes);
 

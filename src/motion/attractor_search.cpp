@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "model/events.hpp"
 #include "motion/lyapunov_exponents.hpp"
 
@@ -220,8 +221,8 @@ constexpr double least_growth = 3.0;  // of the logarithm of a distance in a win
 constexpr double most_spread = 3.0;
 constexpr double least_share = 1e-3;  // of a state, as a share of the largest range
 constexpr double share_of_others = 0.3;
-constexpr double no_range = 1e-12;  // of a state, as a share of the largest range: rounding
-constexpr long first_window = 64;   // events
+constexpr double no_range = level::negligible;  // of a state, as a share of the largest range: rounding
+constexpr long first_window = 64;               // events
 constexpr long most_events = 8192;
 constexpr double without_end = 1e300;
 

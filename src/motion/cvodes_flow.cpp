@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/levels.hpp"
 #include "model/function_values.hpp"
 #include "model/parameter_vector.hpp"
 #include "model/scales.hpp"
@@ -265,7 +266,7 @@ struct CvodesFlow::Implementation {
     double h = watch->value(fallen, dense_output(time));
     for (int iteration = 0; iteration < 3; ++iteration) {
       const double moved = time - h / watch->rate(fallen, dense_output(time));
-      const bool is_small = std::abs(moved - time) <= 1e-10 * std::max(std::abs(time), length);
+      const bool is_small = std::abs(moved - time) <= level::converged * std::max(std::abs(time), length);
       if (!is_small || moved > current || moved < current - length) break;
       const double h_moved = watch->value(fallen, dense_output(moved));
       if (std::abs(h_moved) >= std::abs(h)) break;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/levels.hpp"
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
 #include "model/scales.hpp"
@@ -19,10 +20,10 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double waits = 10.0;       // for the event of a segment, as a multiple of the simulated turn
-constexpr double same_orbit = 0.1;   // largest correction, as a share of the orbit's range
-constexpr double together = 1e-12;   // events so far apart, as a share of the period
-constexpr double same_state = 1e-7;  // of points of the refined orbit, likewise
+constexpr double waits = 10.0;                   // for the event of a segment, as a multiple of the simulated turn
+constexpr double same_orbit = 0.1;               // largest correction, as a share of the orbit's range
+constexpr double together = level::rounding;      // events so far apart, as a share of the period
+constexpr double same_state = level::tolerance;  // of points of the refined orbit, likewise
 
 bool ends_in_section(const HybridSystem& system, const std::vector<SimulatedSegment>& turn, std::size_t s) {
   return is_identity_jump(system, turn[s].index) && turn[(s + 1) % turn.size()].mode.field() == turn[s].mode.field();
@@ -62,14 +63,13 @@ PeriodicOrbit shoot_finely(const HybridSystem& system, FoundOrbit& found, const 
   options.flow.sizes = found.sizes;
   options.flow.max_duration = found.longest_wait;
   const PeriodicOrbit orbit = shoot(system, found.signature, guess, par, options);
-  found.uncertainty = 1e-9;
+  found.uncertainty = level::orbit;
   if (orbit.converged) return orbit;
   // Large derivatives leave fewer digits.
-  options.flow.relative_tolerance = 1e-12;
-  options.flow.absolute_tolerance = 1e-13;
-  options.tolerance = 1e-9;
+  options.flow.set(level::relaxed_flow);
+  options.tolerance = level::orbit;
   const PeriodicOrbit roughly = shoot(system, found.signature, guess, par, options);
-  found.uncertainty = 1e-6;
+  found.uncertainty = level::located;
   if (roughly.converged) return roughly;
   // On a stiff problem the steps of a method for others are too many.
   options.flow.method = IntegrationMethod::bdf;
@@ -227,7 +227,7 @@ FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, co
 
 namespace {
 
-constexpr double wanted_error = 1e-7;
+constexpr double wanted_error = level::tolerance;
 constexpr int most_intervals = 1000;
 constexpr int first_samples = 1600;
 
@@ -242,8 +242,7 @@ class SegmentSampler {
     options_.variational = false;
     options_.method = orbit.method;
     options_.sizes = orbit.sizes;
-    options_.relative_tolerance = 1e-13;
-    options_.absolute_tolerance = 1e-14;
+    options_.set(level::reference_flow);
     options_.max_steps = 10000000;
   }
 
@@ -259,7 +258,7 @@ class SegmentSampler {
  private:
   /// Up to where integration must begin anew, or to the last sample before the end.
   std::size_t sample_from(std::size_t first, const std::vector<double>& tau, MatrixXd& states) const {
-    constexpr double closest = 1e-6;  // of the time since the start: the spacing's rounding is 1e-10 of it
+    constexpr double closest = level::located;  // of the time since the start: the spacing's rounding is 1e-10 of it
     std::size_t last = first + 1;
     while (last + 2 < tau.size() && tau[last + 1] - tau[last] > closest * (tau[last] - tau[first])) ++last;
     const VectorXd start = states.col(static_cast<Eigen::Index>(first));
@@ -348,7 +347,7 @@ Orbit on_mesh(const HybridSystem& system, const FoundOrbit& orbit, const VectorX
 }  // namespace
 
 std::optional<FastPart> fastest_part(const OrbitSamples& samples, int dimension) {
-  constexpr double fewest_digits = 16.0 * std::numeric_limits<double>::epsilon(), away = 1e-6;
+  constexpr double fewest_digits = 16.0 * std::numeric_limits<double>::epsilon(), away = level::located;
   const std::vector<double>& tau = samples.tau;
   const auto close =
       std::adjacent_find(tau.begin(), tau.end(), [](double a, double b) { return b - a < fewest_digits; });

@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "base/levels.hpp"
+
 namespace tchat {
 
 namespace {
@@ -206,7 +208,7 @@ namespace {
 constexpr double bars_of_zero = 3.0;
 // Against the largest exponent or the frequency of events: chaos may be weak, and means of regular motion converge
 // fast.
-constexpr double small_bar = 1e-4;
+constexpr double small_bar = level::visible;
 
 }  // namespace
 

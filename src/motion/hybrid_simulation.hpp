@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/levels.hpp"
 #include "model/hybrid_system.hpp"
 #include "model/index_vector.hpp"
 #include "motion/watched_flow.hpp"
@@ -89,7 +90,7 @@ std::string state_text(const Eigen::VectorXd& x);
 
 /// The start of a simulation counts as on the surface up to |h_j| = start_tolerance sum_i |h_x,i x_i|, wherever the
 /// state is known to be one after the event or may be: states are typed with few digits.
-constexpr double start_tolerance = 1e-4;
+constexpr double start_tolerance = level::five_digits;
 
 struct StartSide {
   enum class Given {

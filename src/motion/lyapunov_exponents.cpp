@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "model/events.hpp"
 #include "model/function_values.hpp"
@@ -24,10 +25,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double hardly_transversal = 1e-7;  // |h_x f-| / (|h_x| |f-|)
-constexpr long least_ticks = 256;            // before ticks become longer
-constexpr double least_speed = 1e-9;         // |f|, as a share of its largest: below it the motion rests
-constexpr double steps_of_tick = 4.0;        // at least, of the integrator
+constexpr double hardly_transversal = level::double_zero;  // |h_x f-| / (|h_x| |f-|)
+constexpr long least_ticks = 256;                          // before ticks become longer
+constexpr double least_speed = level::orbit;               // |f|, as a share of its largest: below it the motion rests
+constexpr double steps_of_tick = 4.0;                      // at least, of the integrator
 
 /// An event whose saltation waits for the field after it.
 struct Saltation {
@@ -166,7 +167,7 @@ struct LyapunovAccumulator::Implementation {
     const double whole = f.norm();
     for (const Index k : ignorable) f(k) = 0.0;
     const double size = f.norm();
-    if (!(size > 1e-12 * whole) || !(size > least_speed * fastest)) return {};
+    if (!(size > level::negligible * whole) || !(size > least_speed * fastest)) return {};
     return f / size;
   }
 
@@ -328,7 +329,7 @@ struct LyapunovAccumulator::Implementation {
   }
 
   /// The watch may see the fall that ends a segment, or not.
-  bool has_just_crossed() const { return has_crossed && time_since_return <= 1e-9 * carried; }
+  bool has_just_crossed() const { return has_crossed && time_since_return <= level::orbit * carried; }
 
   void end_by_event(const SimulatedSegment& segment) {
     ++events;

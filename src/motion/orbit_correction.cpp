@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "base/levels.hpp"
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
 
@@ -14,17 +16,17 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double tolerance_of_turns = 1e-10;
+constexpr double tolerance_of_turns = level::converged;
 constexpr double noise_of_turns = 100.0;  // tolerances, of R(y)
 constexpr int most_newton_steps = 10;
 constexpr double farthest = 2000.0;  // of a Newton step, in scales
-constexpr double newton_converged = 1e-7;
+constexpr double newton_converged = level::tolerance;
 constexpr double rough_step = 1e-3;   // enough where R(y) - y is noise already
 constexpr double least_range = 1e-3;  // of an orbit, in scales
 constexpr double doubtful = 1e-2;     // distance of a modulus from 1 that two tolerances are compared for
-constexpr double least_uncertainty = 1e-8;
-constexpr double linear = 1e-4;        // distance, in scales, in which one turn tells
-constexpr double wanted_decay = 0.25;  // 1 - |mu| summed over the turns that are watched
+constexpr double least_uncertainty = level::differences;
+constexpr double linear = level::visible;  // distance, in scales, in which one turn tells
+constexpr double wanted_decay = 0.25;      // 1 - |mu| summed over the turns that are watched
 constexpr double most_turns = 128.0;
 constexpr std::size_t least_passed = 8;       // turns that the motion has made
 constexpr std::size_t turns_of_leaving = 16;  // at least
@@ -133,8 +135,9 @@ class ApproachTest {
       squares(i) = candidate.scale(i) > 0.0 ? std::pow(candidate.scale(i), -2) : 0.0;
     weight_ = squares.asDiagonal();
     // By doubling: W_2k = W_k + (M^k)' W_k M^k.
+    constexpr double vanished = std::numeric_limits<double>::min();
     MatrixXd m = map_;
-    for (int doubling = 0; doubling < 60 && weight_.allFinite() && m.cwiseAbs().maxCoeff() > 1e-200; ++doubling) {
+    for (int doubling = 0; doubling < 60 && weight_.allFinite() && m.cwiseAbs().maxCoeff() > vanished; ++doubling) {
       weight_ = (weight_ + m.transpose() * weight_ * m).eval();
       m = (m * m).eval();
     }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
@@ -139,7 +140,7 @@ struct EndPoint {
   }
 
   /// False at grazing to rounding, and where a function cannot be evaluated.
-  bool is_transversal() const { return std::abs(velocity) > 1e-14 * hx.cwiseAbs().dot(f.cwiseAbs()); }
+  bool is_transversal() const { return std::abs(velocity) > level::rounding * hx.cwiseAbs().dot(f.cwiseAbs()); }
 };
 
 VectorXcd sorted_eigenvalues(const MatrixXd& m) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 
+#include "base/levels.hpp"
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
 #include "orbit/equilibrium_system.hpp"
@@ -108,7 +109,7 @@ void keep_independent(const HybridSystem& system, FunctionKind kind, const Vecto
     double no_parameters = 0.0;
     system.first(kind, index, x.data(), par.data(), {}, value.data(), dx.data(), &no_parameters);
     if (kind == FunctionKind::jump) dx -= MatrixXd::Identity(n, n);
-    constexpr double rounding = 1e-12;  // of derivatives that are differences, as a share of what a value is made of
+    constexpr double rounding = level::negligible;  // of differences, as a share of what a value is made of
     const VectorXd sizes = (x.array() == 0.0).select(1.0, x.cwiseAbs());
     const MatrixXd terms = dx.cwiseAbs() * sizes.asDiagonal();
     const VectorXd least = rounding * (terms.rowwise().sum() + value.cwiseAbs());
@@ -125,7 +126,7 @@ void Recurrence::add(const SimulatedSegment& segment) {
 }
 
 std::vector<bool> Recurrence::tiny_states() const {
-  constexpr double tiny = 1e-9;
+  constexpr double tiny = level::orbit;
   VectorXd sizes = VectorXd::Zero(back(0).low.size());
   for (const End& end : ends_) sizes = sizes.cwiseMax(end.low.cwiseAbs()).cwiseMax(end.high.cwiseAbs());
   double largest = 0.0;
@@ -296,28 +297,21 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double rounding = 1e-9;  // of real parts, relative to |f_x|
+constexpr double rounding = level::orbit;  // of real parts, relative to |f_x|
 constexpr std::size_t least_states = 4;
-constexpr double no_movement = 1e-3;  // relative to the sizes of the states
-constexpr double there = 1e-8;        // distance that integration cannot tell from zero, likewise
-constexpr double at_surface = 1e-6;   // the same from the surface of an event
-constexpr double least_fall = 1e-3;   // of distances, relative to the last one
+constexpr double no_movement = 1e-3;           // relative to the sizes of the states
+constexpr double there = level::differences;   // distance that integration cannot tell from zero, likewise
+constexpr double at_surface = level::located;  // the same from the surface of an event
+constexpr double least_fall = 1e-3;            // of distances, relative to the last one
 
 /// An equilibrium whose f_x has no eigenvalue with a positive real part.
 std::optional<VectorXd> attracting_equilibrium(const HybridSystem& system, int field, const VectorXd& near,
-                                               const VectorXd& par, const std::vector<Index>& ignorable) {
-  const std::optional<NearbyEquilibrium> found = find_equilibrium(system, field, near, par.data(), ignorable);
+                                               const VectorXd& par, const std::vector<Index>& ignorable,
+                                               const VectorXd& sizes) {
+  const std::optional<NearbyEquilibrium> found = find_equilibrium(system, field, near, par.data(), ignorable, sizes);
   if (!found) return std::nullopt;
   const bool attracts = (eigenvalues(found->jacobian).real().array() <= rounding * found->jacobian.norm()).all();
   return attracts ? std::optional(found->state) : std::nullopt;
-}
-
-/// d in sizes of the states.
-double in_sizes(const VectorXd& d, const VectorXd& sizes) {
-  double sum = 0.0;
-  for (Index i = 0; i < d.size(); ++i)
-    if (d(i) != 0.0) sum += std::pow(d(i) / sizes(i), 2);
-  return std::sqrt(sum);
 }
 
 /// Of falling distances.
@@ -359,8 +353,8 @@ std::optional<VectorXd> reached_equilibrium(const HybridSystem& system, const Si
   for (const Index k : ignorable) f(k) = 0.0;
   // One that has been rounding of zero all along may do what it likes.
   const VectorXd sizes_here = sizes.cwiseMax(sizes_in(system, {&last, 1}, par).sizes());
-  if (!(in_sizes(f * last.duration, sizes_here) <= no_movement)) return std::nullopt;
-  return attracting_equilibrium(system, field, last.end, par, ignorable);
+  if (!(length_in_sizes(f * last.duration, sizes_here) <= no_movement)) return std::nullopt;
+  return attracting_equilibrium(system, field, last.end, par, ignorable, sizes_here);
 }
 
 std::optional<VectorXd> approached_equilibrium(const HybridSystem& system, const IndexVector& index,
@@ -368,7 +362,8 @@ std::optional<VectorXd> approached_equilibrium(const HybridSystem& system, const
                                                const VectorXd& par, const std::vector<Index>& ignorable,
                                                const VectorXd& sizes) {
   if (states.size() < least_states) return std::nullopt;
-  const std::optional<VectorXd> rest = attracting_equilibrium(system, index.field, states.back(), par, ignorable);
+  const std::optional<VectorXd> rest =
+      attracting_equilibrium(system, index.field, states.back(), par, ignorable, sizes);
   if (!rest) return std::nullopt;
   const EventAt at = event_at(system, index.event, rest->data(), par.data());
   if (!(std::abs(at.h) <= at_surface * at.scale(rest->data(), sizes))) return std::nullopt;
@@ -376,7 +371,7 @@ std::optional<VectorXd> approached_equilibrium(const HybridSystem& system, const
   for (const VectorXd& state : states) {
     VectorXd d = state - *rest;
     for (const Index k : ignorable) d(k) = 0.0;
-    const double distance = in_sizes(d, sizes);
+    const double distance = length_in_sizes(d, sizes);
     if (!falling.empty() && !(distance < falling.back()) && !(distance <= there)) falling.clear();
     falling.push_back(distance);
   }

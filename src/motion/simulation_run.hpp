@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "base/levels.hpp"
 #include "model/hybrid_system.hpp"
 #include "model/index_vector.hpp"
 #include "model/scales.hpp"
@@ -68,7 +69,7 @@ class DecayDetector {
   bool dies_out() const { return slow_ >= 4; }
 
  private:
-  static constexpr double next_to_nothing = 1e-12;
+  static constexpr double next_to_nothing = level::negligible;
   std::map<IndexVector, double> largest_;
   int slow_ = 0;  // last events
 };
@@ -133,13 +134,13 @@ std::vector<bool> ignorable_states(const HybridSystem& system, const std::vector
 
 /// How long, and what is looked for. Without `time` and `events`: until the motion repeats itself.
 struct SimulationPlan {
-  double transient_time = 0.0;  ///< segments that begin before this time are dropped
-  long transient_events = 0;    ///< and so many first segments
-  std::optional<double> time;   ///< after the transient
-  std::optional<long> events;   ///< after the transient
-  long most_events = 10000;     ///< where neither is given
-  int max_period = 16;          ///< of a periodic orbit, in segments
-  double recognition = 1e-6;    ///< states that are equal, relative to the range of the orbit
+  double transient_time = 0.0;          ///< segments that begin before this time are dropped
+  long transient_events = 0;            ///< and so many first segments
+  std::optional<double> time;           ///< after the transient
+  std::optional<long> events;           ///< after the transient
+  long most_events = 10000;             ///< where neither is given
+  int max_period = 16;                  ///< of a periodic orbit, in segments
+  double recognition = level::located;  ///< states that are equal, relative to the range of the orbit
 };
 
 struct SimulationResult {

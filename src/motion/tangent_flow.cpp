@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "model/events.hpp"
 
 namespace tchat {
@@ -14,7 +15,7 @@ namespace {
 using Eigen::MatrixXd;
 
 // The error of sixth order that goes with it is about this to the power 7/5.
-constexpr double most_difference = 1e-8;
+constexpr double most_difference = level::differences;
 // The error of Gauss' quadrature of A is h^7 / 2016000 times its sixth derivative: next to h = 0.3 times the scale of
 // time on which A of size 1 changes, 1e-10.
 constexpr double most_slope = 0.3;  // of h^2 A'
@@ -22,7 +23,7 @@ constexpr double most_bend = 0.01;  // of h^3 A'' / 2
 // exp(Omega) V then loses two digits at most, and the shortest direction of V seven between two orthonormalisations.
 constexpr double most_norm = 4.0;
 constexpr double most_stretched = 4.0;
-constexpr double shortest_share = 1e-12;  // of a piece, that a step is halved to
+constexpr double shortest_share = level::negligible;  // of a piece, that a step is halved to
 // Of one piece, which is a step of the integration. Far from all orbits a state may be so large that it would take
 // years.
 constexpr int most_steps = 100'000;
@@ -119,7 +120,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double tangential = 1e-14;  // |h_x f| / (|h_x| |f|): rounding
+constexpr double tangential = level::rounding;  // |h_x f| / (|h_x| |f|): rounding
 constexpr double endless = 1e300;
 
 /// V at the end of a segment, onto the surface of its event. False where that is met tangentially.

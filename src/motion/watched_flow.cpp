@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "model/events.hpp"
 #include "model/function_values.hpp"
 #include "model/scales.hpp"
@@ -175,9 +176,10 @@ using DopriState = std::vector<double>;
 using DormandPrince = odeint::runge_kutta_dopri5<DopriState>;
 using DenseDormandPrince = odeint::result_of::make_dense_output<DormandPrince>::type;
 
-constexpr double no_value = 1e200;       // of a field that has none: the step is refused, and a smaller one tried
-constexpr double smallest_step = 1e-13;  // relative to the time
-constexpr double short_steps = 1e-7;     // a tolerance from which on one look a step for falls of events is enough
+constexpr double no_value = 1e200;  // of a field that has none: the step is refused, and a smaller one tried
+constexpr double smallest_step = level::rounding_of_sums;  // relative to the time
+/// A tolerance from which on one look a step for falls of events is enough.
+constexpr double short_steps = level::tolerance;
 
 }  // namespace
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/levels.hpp"
 #include "model/hybrid_system.hpp"
 
 namespace tchat {
@@ -23,16 +24,20 @@ enum class IntegrationMethod {
 
 struct FlowOptions {
   IntegrationMethod method = IntegrationMethod::adams;
-  /// Of one step; a segment's error is about ten times that. Multipliers near grazing need this much; problems with
-  /// large derivatives may fail to converge and want 1e-12. CVODES refuses less than 2e-16.
-  double relative_tolerance = 1e-15;
-  double absolute_tolerance = 1e-16;
-  double max_duration = 1e3;        ///< give up waiting for an event after this time
-  long max_steps = 100000;          ///< of the integrator, for one segment
-  double surface_tolerance = 1e-9;  ///< |h| below this share of its scale: the start is on the event surface
-  Eigen::VectorXd sizes = {};       ///< of the states, n; none: 1 (surface_scale())
-  bool variational = true;          ///< integrate the flow Jacobian along
-  std::vector<int> active;          ///< PAR indices, from 1, by which derivatives are wanted (needs `variational`)
+  /// Problems with large derivatives may fail to converge and want level::relaxed_flow. CVODES refuses less than 2e-16.
+  double relative_tolerance = level::finest_flow.relative;
+  double absolute_tolerance = level::finest_flow.absolute;
+  double max_duration = 1e3;                ///< give up waiting for an event after this time
+  long max_steps = 100000;                  ///< of the integrator, for one segment
+  double surface_tolerance = level::orbit;  ///< |h| below this share of its scale: the start is on the event surface
+  Eigen::VectorXd sizes = {};               ///< of the states, n; none: 1 (surface_scale())
+  bool variational = true;                  ///< integrate the flow Jacobian along
+  std::vector<int> active;  ///< PAR indices, from 1, by which derivatives are wanted (needs `variational`)
+
+  void set(const level::Tolerances& tolerances) {
+    relative_tolerance = tolerances.relative;
+    absolute_tolerance = tolerances.absolute;
+  }
 };
 
 // The event functions h_j watched along one flow, looked at from one integration step to the next: does one of them

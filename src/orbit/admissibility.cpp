@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 
+#include "base/levels.hpp"
 #include "linear/array_kernel.hpp"
 #include "linear/memory.hpp"
 #include "model/events.hpp"
@@ -35,7 +36,7 @@ Crossing crossing_of_event(const HybridSystem& system, int event, int field, con
 namespace {
 
 /// Between nodes h counts as negative beyond this share of its size, which rounding and a located point do not reach.
-constexpr double surely_negative = 1e-6;
+constexpr double surely_negative = level::located;
 
 }  // namespace
 
@@ -130,7 +131,6 @@ bool follows_rules_there(const HybridSystem& system, const Signature& signature,
 }
 
 bool follows_rules(const HybridSystem& system, const Signature& signature, const Orbit& x, int s) {
-  constexpr double located = 1e-6;
   if (follows_rules_there(system, signature, x, s)) return true;
   const IndexVector& from = signature[static_cast<std::size_t>(s)];
   const IndexVector& to = signature[(static_cast<std::size_t>(s) + 1) % signature.size()];
@@ -139,7 +139,7 @@ bool follows_rules(const HybridSystem& system, const Signature& signature, const
   for (double& state : beside)
     for (const double sign : {1.0, -1.0}) {
       const double own = state;
-      state += sign * located * x.states.row((&state - beside.data())).cwiseAbs().maxCoeff();
+      state += sign * level::located * x.states.row((&state - beside.data())).cwiseAbs().maxCoeff();
       const bool may = may_follow(system, from, to, beside.data(), par);
       state = own;
       if (may) return true;
@@ -184,7 +184,7 @@ std::string describe(const Violation& violation, const HybridSystem& system) {
 namespace {
 
 /// Whether an orbit meets the surface at a start, or has another reason to change the field there.
-constexpr double meets_surface = 1e-6;
+constexpr double meets_surface = level::located;
 
 }  // namespace
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/levels.hpp"
 #include "model/hybrid_system.hpp"
 #include "orbit/collocation_rule.hpp"
 #include "orbit/defining_system.hpp"
@@ -22,7 +23,7 @@ namespace tchat {
 inline constexpr double no_transversality = orbit_accuracy;
 /// At a contact that was located as a zero of h, which is quadratic there, h_x f is known to the root of that (EPSS):
 /// up to this share of |h_x| |f| the contact is tangent, more is a crossing.
-inline constexpr double tangent_contact = 1e-5;
+inline constexpr double tangent_contact = level::same;
 
 struct Crossing {
   double rate = 0.0;   ///< h_x f, the velocity of an impact when h is a distance

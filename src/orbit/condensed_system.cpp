@@ -6,6 +6,7 @@
 #include <functional>
 #include <numeric>
 
+#include "base/levels.hpp"
 #include "linear/frontal_lu.hpp"
 #include "orbit/collocation_rule.hpp"
 
@@ -35,10 +36,7 @@ bool is_pronounced(const EndVector& row, const EndVector& null_vector) {
                                [](double a, double z) { return std::abs(a * z); }) < most_cancelled;
 }
 
-bool has_unit_length(const EndVector& v) {
-  constexpr double rounding = 1e-12;
-  return std::abs(dot(v, v) - 1.0) < rounding;
-}
+bool has_unit_length(const EndVector& v) { return std::abs(dot(v, v) - 1.0) < level::negligible; }
 
 bool are_finite(const std::vector<EndVector>& rows) {
   return std::all_of(rows.begin(), rows.end(), [](const EndVector& row) { return std::isfinite(dot(row, row)); });

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "linear/dense_matrix.hpp"
 #include "orbit/condensed_system.hpp"
 
@@ -170,8 +171,7 @@ void CriticalPair::recall(const std::vector<double>& memory) {
 }
 
 std::string CriticalPair::beyond_end() const {
-  constexpr double accuracy = 1e-6;  // of a located resonance
-  if (!(std::abs(cosine()) > 1.0 + accuracy)) return {};
+  if (!(std::abs(cosine()) > 1.0 + level::located)) return {};
   return fmt::format(
       "the pair of multipliers is real, with product 1 (neutral saddles, no torus bifurcations): the torus curve has "
       "ended at its {} resonance, before this point",
@@ -204,7 +204,7 @@ bool CriticalPair::put_critical_vectors(CriticalVectors& vectors) const {
 /// The plane of the real and imaginary part of the eigenvector next to the first multiplier, by inverse iteration; real
 /// parts first, then imaginary ones.
 bool CriticalPair::begin() {
-  constexpr double beside = 1e-5;  // the shift is not to be an eigenvalue itself
+  constexpr double beside = level::same;  // the shift is not to be an eigenvalue itself
   constexpr int rounds = 3;
   const std::complex<double> shift = first_multiplier_ * (1.0 + beside);
   const int size = map_.size();
@@ -292,7 +292,7 @@ void CriticalPair::set_right_hand_side() {
 /// Newton's method; the last factors belong to a plane that differs from the result by less than the tolerance.
 bool CriticalPair::find_plane() {
   constexpr int most_iterations = 12;
-  constexpr double tolerance = 1e-9;  // of a correction, after which the error is about its square
+  constexpr double tolerance = level::orbit;  // of a correction, after which the error is about its square
   constexpr double farthest = 0.5;
   constexpr double beyond_meeting = 1.1;
   const Eigen::Index size = map_.size();
@@ -437,7 +437,7 @@ void CriticalBranchPoint::choose_next(CondensedSystem& condensed) {
 }
 
 std::string CriticalBranchPoint::beyond_end() const {
-  constexpr double zero = 1e-4;  // far more than the asymmetry of a mesh leaves of b
+  constexpr double zero = level::visible;  // far more than the asymmetry of a mesh leaves of b
   if (!(std::abs(b_) > zero * size_)) return {};
   return fmt::format(
       "the branch points are branch points no longer (the unfolding parameter is {:.2e}, not 0): what makes the "
@@ -459,7 +459,7 @@ BranchPointBreaking branch_point_breaking(const DefiningSystem& system, const Or
   // Singular or not, the blocks are there.
   if (condensed.linearize(x, rows, residual) == Linearization::not_finite || !multiplier.evaluate(condensed, x))
     return {};
-  constexpr double rounding = 1e-6;  // of the matrix: a smaller column says nothing
+  constexpr double rounding = level::located;  // of the matrix: a smaller column says nothing
   CondensedReturnMap map(system, x.shape);
   std::vector<double> matrix;
   map.values(condensed, x, 1.0, matrix);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <complex>
 
+#include "base/levels.hpp"
 #include "linear/dense_matrix.hpp"
 #include "orbit/condensed_system.hpp"
 
@@ -212,8 +213,7 @@ std::string HopfPair::beyond_end() const {
 
 /// At a double eigenvalue 0, which rounding may have made two real ones: the plane that f_x f_x maps to nearly nothing.
 bool HopfPair::begin_at_double_zero() {
-  constexpr double nearly_zero = 1e-4;
-  const auto beyond = [size = nearly_zero * jacobian_.norm()](const auto& value) { return std::abs(value) > size; };
+  const auto beyond = [size = level::visible * jacobian_.norm()](const auto& value) { return std::abs(value) > size; };
   const Eigen::VectorXcd values = eigenvalues(jacobian_);
   if (values.size() - std::count_if(values.begin(), values.end(), beyond) != 2) return false;
   const Eigen::MatrixXd square = jacobian_ * jacobian_;
@@ -278,7 +278,6 @@ Eigen::MatrixXd HopfPair::newton_matrix(const Plane& border) const {
 
 bool HopfPair::find_plane() {
   constexpr int most_iterations = 12;
-  constexpr double tolerance = 1e-13;
   const Eigen::Index n = plane_.rows();
   const Plane border = plane_;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
@@ -292,9 +291,9 @@ bool HopfPair::find_plane() {
     plane_.col(1) += change.segment(n, n);
     pair_.col(0) += change.segment(2 * n, 2);
     pair_.col(1) += change.segment(2 * n + 2, 2);
-    const double size = change.head(2 * n).norm() + change.tail(4).norm() / (1.0 + pair_.norm());
-    if (size < tolerance) return true;
-    if (size < 1e-6 && iteration + 1 == most_iterations) return true;
+    const double size = change.head(2 * n).norm() + change.tail(4).norm() / jacobian_.norm();
+    if (size < level::rounding_of_sums) return true;
+    if (size < level::stalled && iteration + 1 == most_iterations) return true;
   }
   return false;
 }
@@ -325,9 +324,10 @@ bool HopfPair::evaluate(CondensedSystem&, const Orbit& x) {
 }
 
 std::optional<NearbyEquilibrium> find_equilibrium(const HybridSystem& system, int field, const Eigen::VectorXd& near,
-                                                  const double* par, const std::vector<Eigen::Index>& ignored) {
+                                                  const double* par, const std::vector<Eigen::Index>& ignored,
+                                                  const Eigen::VectorXd& sizes) {
   constexpr int most_steps = 20;
-  constexpr double converged = 1e-10;  // relative to the sizes of x and of f_x x
+  constexpr double smallest = level::rounding / level::converged;  // of the largest size: rounding of it is no change
   const Eigen::Index n = near.size();
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < n; ++i)
@@ -343,9 +343,12 @@ std::optional<NearbyEquilibrium> find_equilibrium(const HybridSystem& system, in
     const Eigen::VectorXd dx = least_squares(jacobian, -value);
     if (!dx.allFinite()) return std::nullopt;
     for (Eigen::Index i = 0; i < dx.size(); ++i) x(kept[static_cast<std::size_t>(i)]) += dx(i);
-    if (dx.norm() > converged * (1.0 + x.norm())) continue;
+    const Eigen::VectorXd all = sizes.cwiseMax(x.cwiseAbs());
+    const Eigen::VectorXd size = all(kept).cwiseMax(smallest * all(kept).maxCoeff());
+    if ((dx.array().abs() > level::converged * size.array()).any()) continue;
     // Where f_x is singular the shortest step may leave f as it is.
-    if ((jacobian * dx + value).norm() > converged * (1.0 + jacobian.norm() * x.norm())) return std::nullopt;
+    const Eigen::VectorXd left = jacobian * dx + value, terms = jacobian.cwiseAbs() * size;
+    if ((left.array().abs() > level::converged * terms.array()).any()) return std::nullopt;
     return NearbyEquilibrium{x, jacobian};
   }
   return std::nullopt;
@@ -354,7 +357,7 @@ std::optional<NearbyEquilibrium> find_equilibrium(const HybridSystem& system, in
 std::optional<NearbyFold> find_fold(const HybridSystem& system, int field, const Eigen::VectorXd& near,
                                     Eigen::VectorXd par, int active) {
   constexpr int most_steps = 30;
-  constexpr double converged = 1e-8;  // shares of sizes of the unknowns; the double zero of f leaves half of the digits
+  constexpr double converged = level::differences;  // shares of sizes of the unknowns; the double zero of f leaves half of the digits
   const Eigen::Index n = near.size();
   const int parameters[] = {active};
   Eigen::VectorXd x = near, f(n), fv(n);

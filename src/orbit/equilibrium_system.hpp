@@ -167,9 +167,11 @@ struct NearbyEquilibrium {
 };
 
 /// Of field `field` (from 1); nothing where Newton's method does not converge. Where f_x is singular the step is the
-/// shortest one. States that nothing depends on (`ignored`, from 0) keep their values, and may move.
+/// shortest one. States that nothing depends on (`ignored`, from 0) keep their values, and may move. `sizes`: of the
+/// states, n.
 std::optional<NearbyEquilibrium> find_equilibrium(const HybridSystem& system, int field, const Eigen::VectorXd& near,
-                                                  const double* par, const std::vector<Eigen::Index>& ignored);
+                                                  const double* par, const std::vector<Eigen::Index>& ignored,
+                                                  const Eigen::VectorXd& sizes);
 
 /// A fold of equilibria in parameter `active` (a PAR index): where f = 0 and f_x is singular.
 struct NearbyFold {

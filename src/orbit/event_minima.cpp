@@ -6,6 +6,7 @@
 #include <boost/numeric/odeint.hpp>
 #include <cmath>
 
+#include "base/levels.hpp"
 #include "linear/array_kernel.hpp"
 #include "linear/memory.hpp"
 #include "model/events.hpp"
@@ -19,7 +20,7 @@ namespace {
 using Vector = Eigen::VectorXd;
 
 /// How close to parallel two gradients of a pinned start must be, and how close to zero h there (of its size).
-constexpr double structural_tolerance = 1e-6;
+constexpr double structural_tolerance = level::located;
 constexpr int most_nodes = CollocationRule::most_points + 1;  // of an interval
 
 /// One event function along one segment's collocation polynomials.
@@ -70,9 +71,8 @@ class EventAlongSegment {
 
   /// Rounding may place a minimum slightly inside an end; it is then moved onto the end.
   static double snapped(double tau) {
-    constexpr double rounding = 1e-12;
-    if (tau < rounding) return 0.0;
-    return tau > 1.0 - rounding ? 1.0 : tau;
+    if (tau < level::negligible) return 0.0;
+    return tau > 1.0 - level::negligible ? 1.0 : tau;
   }
 
   Vector gradient(const Vector& u) const { return event_at(system_, event_, u.data(), par()).gradient; }
@@ -87,7 +87,9 @@ class EventAlongSegment {
     const auto rhs = [&](const State& y, State& dydt, double) {
       system_.value(FunctionKind::field, field_, y.data(), par(), dydt.data());
     };
-    auto stepper = odeint::make_controlled<odeint::runge_kutta_fehlberg78<State>>(1e-14, 1e-13);
+    constexpr level::Tolerances tolerances = level::reference_flow;
+    auto stepper =
+        odeint::make_controlled<odeint::runge_kutta_fehlberg78<State>>(tolerances.absolute, tolerances.relative);
     double t = 0.0;
     double dt = time;
     for (int trial = 0; t < time; ++trial) {

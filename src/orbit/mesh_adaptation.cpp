@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "base/levels.hpp"
 #include "linear/array_kernel.hpp"
 
 namespace tchat {
@@ -371,7 +372,7 @@ namespace {
 
 std::size_t index(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
 
-constexpr double rounding_of_times = 1e-14;
+constexpr double rounding_of_times = level::rounding;
 
 /// The largest of the segments' densities, intervals per unit of tau, on each interval of `grid`, which has the points
 /// of all meshes.

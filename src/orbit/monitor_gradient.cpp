@@ -4,15 +4,16 @@
 #include <cmath>
 #include <limits>
 
+#include "base/levels.hpp"
 #include "linear/dense_matrix.hpp"
 
 namespace tchat {
 
 namespace {
 
-constexpr double noise = 1e-6;  // of the terms of a second derivative
+constexpr double noise = level::located;  // of the terms of a second derivative
 /// Closer to a singular matrix there is no family in these parameters.
-constexpr double least_distance = 1e-10;
+constexpr double least_distance = level::converged;
 
 std::vector<const Monitor*> with_objective(const Monitor& objective, const std::vector<const Monitor*>& held) {
   std::vector<const Monitor*> list{&objective};
@@ -64,7 +65,7 @@ bool ReducedGradient::evaluate(const Orbit& x) {
 
 /// Within a period.
 bool ReducedGradient::depends_on_phase(const Orbit& x) {
-  constexpr double zero = 1e-6;
+  constexpr double zero = level::located;
   for (int s = 0; s < x.shape.segments; ++s)
     for (std::size_t i = 0; !system_.has_event(s) && i < monitors_.size(); ++i)
       if (std::abs(x.period() * nodal_.phase_derivative(adjoint_[i], x, s)) >
@@ -100,7 +101,7 @@ const OrbitVector& ReducedGradient::tangent(int k) {
 
 /// The largest change of a free parameter against its own size, which is the scale on which monitors may change.
 double ReducedGradient::relative_change(const Orbit& x, const OrbitVector& y) const {
-  constexpr double least = 1e-6;
+  constexpr double least = level::located;
   double largest = 0.0;
   for (Eigen::Index k = 0; k < y.globals.size(); ++k) {
     const double p = std::abs(x.par(system_.free_parameters()[static_cast<std::size_t>(k)] - 1));
@@ -149,7 +150,7 @@ void ReducedGradient::add_monitor_gradient(const Orbit& x, const OrbitVector& al
 
 /// In units of the parameters in which the diagonal is 1, for signs are the same in all units.
 ReducedGradient::Nature ReducedGradient::nature(const Orbit& x, const std::vector<int>& parameters) {
-  constexpr double least = 1e-4;  // far more than differences and the distance to the point leave
+  constexpr double least = level::visible;  // far more than differences and the distance to the point leave
   const auto count = std::ssize(parameters);
   Eigen::MatrixXd second(count, count), terms(count, count);
   OrbitVector row(x.shape, system_.free_count());

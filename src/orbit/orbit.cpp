@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/levels.hpp"
 #include "linear/array_kernel.hpp"
 #include "model/events.hpp"
 #include "model/scales.hpp"
@@ -137,10 +138,24 @@ Eigen::VectorXd state_sizes(const HybridSystem& system, const Signature& signatu
 }
 
 Eigen::VectorXd state_uncertainty(const Orbit& x) {
-  constexpr double rounding = 1e-14;
   const Eigen::VectorXd sizes = x.states.cwiseAbs().rowwise().maxCoeff();
-  const double least = std::max(rounding * sizes.maxCoeff(), std::numeric_limits<double>::min());
+  const double least = std::max(level::rounding * sizes.maxCoeff(), std::numeric_limits<double>::min());
   return (orbit_accuracy * sizes).cwiseMax(least);
+}
+
+Eigen::VectorXd state_moduli(const Orbit& x) {
+  const Eigen::VectorXd largest = x.states.cwiseAbs().rowwise().maxCoeff();
+  return largest.cwiseMax(std::max(level::same * largest.maxCoeff(), std::numeric_limits<double>::min()));
+}
+
+double relative_difference(const Orbit& x, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return (a - b).cwiseAbs().cwiseQuotient(state_moduli(x)).maxCoeff<Eigen::PropagateNaN>();
+}
+
+double relative_event(const HybridSystem& system, const Orbit& x, int event, const Eigen::VectorXd& state) {
+  const EventAt at = event_at(system, event, state.data(), x.par.data());
+  const double scale = at.scale(state.data(), state_moduli(x));  // 0 where h depends on parameters alone
+  return std::abs(at.h) / (scale > 0.0 ? scale : 1.0);
 }
 
 }  // namespace tchat

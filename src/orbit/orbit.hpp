@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/levels.hpp"
 #include "model/hybrid_system.hpp"
 #include "model/parameter_vector.hpp"
 
@@ -139,9 +140,8 @@ double dot_difference(const OrbitVector& row, const Orbit& x, const Orbit& base,
 
 // How well a computed orbit is known: the one level below which a value says nothing.
 
-/// Relative error of a corrected orbit: Newton's method ends with 1e-12 to 1e-10, the discretisation adds its own.
-/// Whatever is computed from the orbit is zero up to this share of the sizes that it is made of.
-inline constexpr double orbit_accuracy = 1e-9;
+/// Relative error of a corrected orbit.
+inline constexpr double orbit_accuracy = level::orbit;
 
 /// The size of an event function, against which a value of it is small: the largest |h| at the mesh points of the whole
 /// orbit, for on a segment that is about to vanish all of them are small. Of an equilibrium, whose h may be all there
@@ -156,11 +156,21 @@ Eigen::VectorXd state_sizes(const HybridSystem& system, const Signature& signatu
 /// less than rounding of the largest of all states, for a state that is zero throughout shows nothing but rounding.
 Eigen::VectorXd state_uncertainty(const Orbit& x);
 
+/// The largest |x_k| over the orbit, n: differences of its states are compared with these. Not less than level::same
+/// times the largest of all, for a state that is zero throughout shows nothing but rounding.
+Eigen::VectorXd state_moduli(const Orbit& x);
+
+/// The largest |a_k - b_k| of two states beside the state_moduli() of the orbit.
+double relative_difference(const Orbit& x, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
+
+/// |h_j| at a state, beside what states as large as those of the orbit make of h_j (surface_scale()).
+double relative_event(const HybridSystem& system, const Orbit& x, int event, const Eigen::VectorXd& state);
+
 // When a segment lasts no time.
 
 /// Durations that are a smaller share of the period are zero: located points, where segments vanish, are known to about
 /// ten times less (EPSS).
-inline constexpr double no_duration = 1e-6;
+inline constexpr double no_duration = level::located;
 
 /// Does segment s (from 0) last no time, but for the accuracy of a located point?
 inline bool lasts_no_time(const Orbit& x, int s, double period) {
@@ -171,7 +181,7 @@ inline bool lasts_no_time(const Orbit& x, int s) { return lasts_no_time(x, s, x.
 
 /// A contact segment (model/events.hpp) that shrinks to nothing passes zero in proportion to the arclength,
 /// so that a located point knows its duration to EPSS, which may be coarse. At a tangency a shorter one is zero.
-inline constexpr double no_contact = 1e-4;
+inline constexpr double no_contact = level::visible;
 
 inline bool contact_lasts_no_time(const Orbit& x, int s) {
   return std::abs(x.duration(s)) <= no_contact * std::abs(x.period());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/levels.hpp"
 #include "orbit/collocation_rule.hpp"
 #include "orbit/defining_system.hpp"
 #include "orbit/orbit.hpp"
@@ -105,8 +106,8 @@ using Eigen::VectorXd;
 
 /// Changes of H, relative to its gradient and how fast the state moves, and to its value and to what a state of size 1
 /// makes of it, that derivatives by differences and orbits that are solved to the usual tolerances make.
-constexpr double relative_rounding = 1e-5;
-constexpr double least_change = 1e-9;
+constexpr double relative_rounding = level::same;
+constexpr double least_change = level::orbit;
 /// The same of its mean slope on the way from the start of a segment, relative to its gradient. Near a kink of H the
 /// rate by differences is wrong, and where the orbit has errors the change is.
 constexpr double least_slope = 1e-3;
@@ -177,7 +178,7 @@ std::string ConservativeOrbitSystem::jump_name(int s) const {
 }
 
 std::string ConservativeOrbitSystem::why_not_closed(const Orbit& x) const {
-  constexpr double gap = 1e-6;  // of the states where the ring closes
+  constexpr double gap = level::located;  // of the states where the ring closes
   find_gradient(x);
   const double lambda = x.par(layout().unfolding(segments()) - 1);
   const double slope = Eigen::Map<const VectorXd>(gradient_.data(), dimension()).norm();

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 
 namespace tchat {
@@ -96,8 +98,8 @@ double QuantityFunction::first(const double* x, const double* par, double* by_st
 /// A function may change on the scale of a small variable itself: where formulas of two orders differ much, with a step
 /// that is small against it, unless rounding is more than that then.
 double QuantityFunction::by_difference(double& variable, const double* x, const double* par) const {
-  constexpr double much = 1e-4;  // the error of the better one is about the square
-  constexpr double rounding = 1e-15;
+  constexpr double much = level::visible;  // the error of the better one is about the square
+  constexpr double rounding = std::numeric_limits<double>::epsilon();
   const double here = variable;
   struct Difference {
     double derivative, uncertainty;

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "orbit/defining_system.hpp"
 
 namespace tchat {
@@ -94,7 +95,7 @@ using Eigen::VectorXd;
 
 constexpr double whole_angle = 2.0 * std::numbers::pi;
 /// Of the values of a function: what rounding of 2 pi may do to them.
-constexpr double rounding_of_angles = 1e-9;
+constexpr double rounding_of_angles = level::orbit;
 constexpr int most_turns = 3;
 
 VectorXd function_value(const HybridSystem& system, FunctionKind kind, int index, const VectorXd& x,
@@ -104,13 +105,23 @@ VectorXd function_value(const HybridSystem& system, FunctionKind kind, int index
   return out;
 }
 
+/// What each value of a function is made of: itself, and what states as large as these make of its derivatives.
+VectorXd sizes_of_terms(const HybridSystem& system, FunctionKind kind, int index, const VectorXd& x,
+                        const VectorXd& states, const VectorXd& par) {
+  VectorXd value(system.rows(kind));
+  Eigen::MatrixXd by_state(system.rows(kind), x.size());
+  system.first(kind, index, x.data(), par.data(), {}, value.data(), by_state.data(), nullptr);
+  return value.cwiseAbs() + by_state.cwiseAbs() * states.cwiseAbs();
+}
+
 /// Do the functions of a segment not see that a state is a turn further?
 bool is_blind(const HybridSystem& system, const IndexVector& index, const VectorXd& x, const VectorXd& further,
               const VectorXd& par) {
   const auto differs = [&](FunctionKind kind, int which, const VectorXd& shift) {
     const VectorXd here = function_value(system, kind, which, x, par);
     const VectorXd there = function_value(system, kind, which, further, par) - shift;
-    return !((here - there).cwiseAbs().maxCoeff() <= rounding_of_angles * (1.0 + here.cwiseAbs().maxCoeff()));
+    const VectorXd sizes = sizes_of_terms(system, kind, which, x, further.cwiseAbs().cwiseMax(x.cwiseAbs()), par);
+    return !((here - there).array().abs() <= rounding_of_angles * sizes.array()).all();
   };
   const VectorXd none = VectorXd::Zero(x.size());
   return !differs(FunctionKind::field, index.field, none) &&
@@ -332,8 +343,8 @@ Eigen::MatrixXd periodic_section_curve(const TorusSystem& system, const Orbit& x
 double mean_return_time(const TorusSystem& system, const Orbit& x) { return x.period() / system.orbits(); }
 
 Eigen::VectorXd torus_harmonics(const TorusSystem& system, const Orbit& x) {
-  const Eigen::VectorXd ranges =
-      (x.states.rowwise().maxCoeff() - x.states.rowwise().minCoeff()).cwiseMax(1e-12 * x.states.cwiseAbs().maxCoeff());
+  const Eigen::VectorXd ranges = (x.states.rowwise().maxCoeff() - x.states.rowwise().minCoeff())
+                                     .cwiseMax(level::negligible * x.states.cwiseAbs().maxCoeff());
   const Eigen::MatrixXd columns = periodic_columns(x, system.orbits(), system.winding().curve);
   const Eigen::Index m = system.segments_per_return();
   Eigen::VectorXd scale(columns.rows());

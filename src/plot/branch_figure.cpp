@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "files/auto_format.hpp"
 #include "files/solution_file.hpp"
@@ -339,7 +340,7 @@ Figure branch_figure(const std::vector<BranchFile>& files, const BranchFigureOpt
 
 namespace {
 
-constexpr double digits_of_header = 1e-4;
+constexpr double digits_of_header = level::five_digits;
 
 /// RL0, RL1, A0, A1 of r.NAME; nothing without it.
 std::vector<double> recorded_bounds(const std::string& point_path) {

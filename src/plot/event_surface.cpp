@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "files/auto_format.hpp"
 #include "files/recorded_labels.hpp"
@@ -18,7 +19,7 @@ namespace tchat {
 
 namespace {
 
-constexpr double tolerance = 1e-9;
+constexpr double tolerance = level::orbit;
 constexpr int cells = 160;
 constexpr Eigen::Index samples = 60;  // of a segment
 
@@ -121,8 +122,9 @@ bool EventSurfaces::is_section(int event) const {
         slope_square += slope * slope;
         square += h * h;
       });
-      const bool parallel = square > 0.0 && slope_square > 0.0 &&
-                            std::abs(product * product - square * slope_square) <= 1e-10 * square * slope_square;
+      const bool parallel =
+          square > 0.0 && slope_square > 0.0 &&
+          std::abs(product * product - square * slope_square) <= level::converged * square * slope_square;
       if (parallel) return true;
     }
   }
@@ -152,7 +154,7 @@ bool EventSurfaces::same_zeros(int event, int other, int a, int b, const StateWi
       other_square += k * k;
     }
     const double size = square * other_square;
-    if (!(size > 0.0) || !(std::abs(product * product - size) <= 1e-12 * size)) return false;
+    if (!(size > 0.0) || !(std::abs(product * product - size) <= level::negligible * size)) return false;
   }
   return true;
 }

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 
 namespace tchat {
@@ -219,7 +220,7 @@ namespace {
 constexpr double infinity_in_files = 1e90;
 constexpr double margin = 0.04;
 /// Ends that differ by less than this part of their size are equal in a script.
-constexpr double narrowest = 1e-8;
+constexpr double narrowest = level::differences;
 
 struct Range {
   double low = std::numeric_limits<double>::infinity();
@@ -275,7 +276,7 @@ double round_step(double span, int most) {
 void set_linear_tics(AxisScale& scale, int most) {
   const double largest = std::max(std::abs(scale.low), std::abs(scale.high));
   scale.tic_step = round_step(scale.high - scale.low, most);
-  const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(scale.tic_step) + 1e-9)));
+  const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(scale.tic_step) + level::negligible)));
   scale.format = largest >= 1e6 || largest < 1e-4 ? "%g" : fmt::format("%.{}f", decimals);
   scale.widest_number = 0.0;
   for (const double tic : {std::ceil(scale.low / scale.tic_step), std::floor(scale.high / scale.tic_step)})

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "files/orbit_trace.hpp"
 #include "plot/figure.hpp"
@@ -15,7 +16,7 @@ namespace tchat {
 namespace {
 
 constexpr double farthest = 2.5;
-constexpr double critical_width = 1e-4;  // of what has a label on the circle
+constexpr double critical_width = level::visible;  // of what has a label on the circle
 
 Curve unit_circle() {
   constexpr int corners = 360;

@@ -10,6 +10,7 @@
 #include <map>
 #include <string_view>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "base/words.hpp"
 #include "plot/column_expression.hpp"
@@ -119,7 +120,7 @@ double nearest(const SweptQuantity& swept, const SweepChoice& choice, const std:
   double best = swept.value(0);
   for (long i = 1; i < swept.count; ++i)
     if (std::abs(swept.value(i) - choice.value) < std::abs(best - choice.value)) best = swept.value(i);
-  if (std::abs(best - choice.value) > 1e-9 * std::max({std::abs(low), std::abs(high), step}))
+  if (std::abs(best - choice.value) > level::orbit * std::max({std::abs(low), std::abs(high), step}))
     warnings.push_back(
         fmt::format("{}: the value of {} nearest to {:.12g} is {:.12g}", path, choice.column, choice.value, best));
   return best;
@@ -193,7 +194,7 @@ std::vector<std::size_t> chosen_rows(const SweepTable& table, const std::string&
     const SweptQuantity* swept = swept_quantity(table, name);
     const double value = swept != nullptr ? nearest(*swept, choice, path, warnings) : choice.value;
     // Columns are numbers of a text: equal to what the sweep says of its values but for their last digits.
-    const double slack = swept != nullptr ? 1e-9 * std::max(std::abs(swept->from), std::abs(swept->to)) : 0.0;
+    const double slack = swept != nullptr ? level::orbit * std::max(std::abs(swept->from), std::abs(swept->to)) : 0.0;
     std::erase_if(rows, [&](std::size_t k) { return !(std::abs((*column)[k] - value) <= slack); });
     if (rows.empty())
       throw UserError(
@@ -324,7 +325,7 @@ RowColours scale_of_colours(const std::string& path, const ColourWish& wish, con
   if (!(range.low <= range.high) && !(wish.low && wish.high))
     throw UserError(fmt::format("{}: -z '{}' is nowhere a number", path, wish.column));
   range = {wish.low.value_or(range.low), wish.high.value_or(range.high)};
-  if (!(range.high - range.low > 1e-8 * std::max(std::abs(range.low), std::abs(range.high)))) {
+  if (!(range.high - range.low > level::differences * std::max(std::abs(range.low), std::abs(range.high)))) {
     const double half = std::max(0.05 * std::abs(range.low), 1e-12);
     range = {range.low - half, range.low + half};
   }

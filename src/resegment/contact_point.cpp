@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "files/solution_file_reader.hpp"
 #include "model/events.hpp"
@@ -26,9 +27,7 @@ namespace tchat {
 namespace {
 
 /// A contact nearer to a segment's end than this share of it lies on the end.
-constexpr double at_the_end = 1e-6;
-/// The jump of a section moves the point of contact by no more than this.
-constexpr double section_moves_at_most = 1e-6;
+constexpr double at_the_end = level::located;
 
 int checked(int number, int count, const char* what, const std::string& source) {
   if (number >= 1 && number <= count) return number;
@@ -47,9 +46,7 @@ void require_section(const ContactPoint& contact, const Orbit& x, const HybridSy
   Eigen::VectorXd after(x.shape.dimension);
   system.value(FunctionKind::jump, index.jump, end.data(), x.par.data(), after.data());
   const bool same_field = settings.segments[static_cast<std::size_t>(next)].index.field == index.field;
-  if (same_field &&
-      (after - end).lpNorm<Eigen::Infinity>() <= section_moves_at_most * (1.0 + end.lpNorm<Eigen::Infinity>()))
-    return;
+  if (same_field && relative_difference(x, after, end) <= level::located) return;
   throw UserError(fmt::format(
       "{}: the contact with event {} ({}) coincides with the end of segment {}, where event {} ({}) {}: two events at "
       "once. Where they change places, or a segment of no duration vanishes or appears, the run goes on with another "
@@ -118,9 +115,9 @@ ContactPoint contact_point(const LabelledSolution& solution, const Orbit& x, con
 namespace {
 
 /// Of the size of h on the segment: what the location of the label and its mesh leave of a contact.
-constexpr double touching = 1e-6;
+constexpr double touching = level::located;
 /// In tau: a contact nearer than this to a segment's end is on it, two contacts nearer than this are one.
-constexpr double same_place = 1e-6;
+constexpr double same_place = level::located;
 
 struct Slope {
   double h = 0.0;
@@ -224,9 +221,7 @@ std::optional<int> section_at_end(const Orbit& x, const HybridSystem& system, in
   for (int j = 1; j <= system.count(FunctionKind::event); ++j) {
     if (j == event) continue;
     const Slope slope = slope_at(system, field, j, end.data(), x.par.data());
-    if (std::abs(slope.h) <= touching * (1.0 + end.lpNorm<Eigen::Infinity>()) && slope.rate < 0.0 &&
-        !slope.is_tangent())
-      return j;
+    if (relative_event(system, x, j, end) <= touching && slope.rate < 0.0 && !slope.is_tangent()) return j;
   }
   return std::nullopt;
 }

@@ -6,6 +6,7 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "model/events.hpp"
 #include "orbit/orbit.hpp"
@@ -95,11 +96,10 @@ class LostContacts {
   }
 
   bool leaves_state(int s) const {
-    constexpr double rounding = 1e-6;  // the velocity of a located point
     const Eigen::Map<const Eigen::VectorXd> end(x_.end(s), x_.shape.dimension);
     Eigen::VectorXd image(end.size());
     system_.value(FunctionKind::jump, index(s).jump, end.data(), x_.par.data(), image.data());
-    return (image - end).lpNorm<Eigen::Infinity>() <= rounding * (1.0 + end.lpNorm<Eigen::Infinity>());
+    return relative_difference(x_, image, end) <= level::located;
   }
 
   /// Groups end where the end of a segment remains; when none does, the orbit is closed at the first one that a section
@@ -209,7 +209,7 @@ class LostContacts {
 
   /// The end, where the section is met there; else the first place where it is met from above.
   double place_of_section(const Orbit& x, const IndexVector& section) const {
-    constexpr double on_it = 1e-6;
+    constexpr double on_it = level::located;
     const CollocationRule rule(x.shape.collocation);
     // A contact touches its surface; which way it goes through there is rounding.
     const auto falls = [](const EventAt& event) { return event.rate() < -on_it * event.sizes(); };
@@ -217,7 +217,7 @@ class LostContacts {
       return system_.event(section.event, state_at(x, rule, 0, tau).data(), x.par.data());
     };
     const EventAt end = event_at(system_, section.event, section.field, x.end(0), x.par.data());
-    if (std::abs(end.h) <= on_it * end.scale(x.end(0)) && falls(end)) return 1.0;
+    if (std::abs(end.h) <= on_it * end.scale(x.end(0), state_moduli(x)) && falls(end)) return 1.0;
     for (int k = 1; k < x.shape.nodes_of(0); ++k) {
       const double from = x.tau(0, k - 1);
       const double to = x.tau(0, k);

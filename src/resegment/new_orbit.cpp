@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "model/events.hpp"
 #include "orbit/admissibility.hpp"
@@ -41,15 +42,13 @@ int identity_jump(const HybridSystem& system, int field) {
 /// every state of the segment as it is. Where a state is constant (a velocity in stick) the identity may leave it
 /// undetermined, and a jump that sets it does the same to the orbit and determines it.
 std::vector<int> jumps_without_effect(const HybridSystem& system, const Orbit& x, int s, int field, int own) {
-  constexpr double unmoved = 1e-6;
   std::vector<int> jumps{identity_jump(system, field)};
   Eigen::VectorXd after(x.shape.dimension);
   const auto moves = [&](int jump) {
     for (int k = 0; k < x.shape.nodes_of(s); ++k) {
       const Eigen::Map<const Eigen::VectorXd> state(x.node(s, k), x.shape.dimension);
       system.value(FunctionKind::jump, jump, state.data(), x.par.data(), after.data());
-      const double change = (after - state).lpNorm<Eigen::Infinity>();
-      if (!(change <= unmoved * (1.0 + state.lpNorm<Eigen::Infinity>()))) return true;
+      if (!(relative_difference(x, after, state) <= level::located)) return true;
     }
     return false;
   };
@@ -127,7 +126,6 @@ std::vector<int> empty_segments(const SegmentList& segments) {
 
 /// Watched events that come just where another one ends the segment.
 std::vector<Birth::EndEvent> events_at_ends(const SegmentList& segments, const Orbit& x, const HybridSystem& system) {
-  constexpr double at_zero = 1e-5;
   std::vector<Birth::EndEvent> list;
   for (std::size_t s = 0; s < segments.size(); ++s) {
     const NewSegment& segment = segments[s];
@@ -135,8 +133,7 @@ std::vector<Birth::EndEvent> events_at_ends(const SegmentList& segments, const O
     if (segment.piece.empty()) continue;  // its own growth tells
     for (const WatchedEvent& watched : segment.watched) {
       if (watched.event == segment.index.event) continue;
-      const double h = system.event(watched.event, end.data(), x.par.data());
-      if (std::abs(h) <= at_zero * (1.0 + end.lpNorm<Eigen::Infinity>()))
+      if (relative_event(system, x, watched.event, end) <= level::same)
         list.push_back({static_cast<int>(s), watched.event});
     }
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "files/dat_file.hpp"
 #include "orbit/mesh_adaptation.hpp"
@@ -261,9 +262,9 @@ OrbitStart assemble(const OrbitStart& old, const std::vector<OrbitPiece>& pieces
 namespace {
 
 /// Of a parameter or a duration: what the correction of a start may change.
-constexpr double correction_moves_at_most = 1e-5;
+constexpr double correction_moves_at_most = level::same;
 /// A smaller part of the tangent is no change.
-constexpr double no_change = 1e-10;
+constexpr double no_change = level::converged;
 
 /// d(h_x f) at the end of segment `impact` along the tangent: the second condition of a grazing orbit.
 double slope_along_tangent(const HybridSystem& system, const DefiningSystem& defining, const PathPoint& point,
@@ -307,11 +308,15 @@ double least_along_tangent(const HybridSystem& system, const DefiningSystem& def
 }
 
 /// Of parameters and durations. The monitors behind them in PAR are evaluated by the run, not stored in its start.
-bool has_moved(const Orbit& found, const Orbit& start) {
-  const Eigen::Index own = start.par.layout().first_monitor(start.shape.segments) - 1;
-  const auto before = start.par.head(own).array();
-  const double scale = 1.0 + std::abs(start.period());
-  return ((found.par.head(own).array() - before).abs() > correction_moves_at_most * (scale + before.abs())).any();
+bool has_moved(const HybridSystem& system, const Orbit& found, const Orbit& start) {
+  const ParameterLayout& layout = start.par.layout();
+  const int segments = start.shape.segments;
+  for (int k = 1; k < layout.first_monitor(segments); ++k) {
+    const double before = start.par(k - 1);
+    const double size = layout.is_duration(k, segments) ? std::abs(start.period()) : system.parameter_size(k, before);
+    if (std::abs(found.par(k - 1) - before) > correction_moves_at_most * size) return true;
+  }
+  return false;
 }
 
 int sign_of(double rate) { return std::abs(rate) > no_change ? (rate > 0.0 ? 1 : -1) : 0; }
@@ -323,7 +328,7 @@ int side_of_birth(const HybridSystem& system, const RunSettings& settings, const
   try {
     const BranchSetup setup = set_up_branch(system, settings, start);
     const PathPoint& point = setup.start.point;
-    if (has_moved(point.orbit, start.start.orbit)) return 0;
+    if (has_moved(system, point.orbit, start.start.orbit)) return 0;
     std::vector<int> sides;
     for (const int s : birth.impacts) sides.push_back(-sign_of(slope_along_tangent(system, *setup.defining, point, s)));
     for (const int s : birth.empty_segments) sides.push_back(sign_of(point.tangent.durations(s)));

@@ -7,14 +7,16 @@
 #include <limits>
 #include <optional>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "model/events.hpp"
+#include "model/scales.hpp"
 
 namespace tchat {
 
 namespace {
 
-constexpr double fit_tolerance = 1e-4;
+constexpr double fit_tolerance = level::five_digits;
 
 std::vector<IndexVector> successors(const HybridSystem& system, const IndexVector& from, const Eigen::VectorXd& x,
                                     const ParameterVector& par) {
@@ -43,6 +45,13 @@ Following successors_with_field(const HybridSystem& system, const IndexVector& b
   return {x, {}};
 }
 
+/// Is the state on the surface of the event that ends a segment which begins there?
+bool is_at_event(const HybridSystem& system, const IndexVector& v, const Eigen::VectorXd& x,
+                 const ParameterVector& par) {
+  const EventAt at = event_at(system, v.event, x.data(), par.data());
+  return std::abs(at.h) <= fit_tolerance * at.scale(x.data(), sizes_at(system, v.field, x, par));
+}
+
 std::string event_text(const HybridSystem& system, int event) {
   return fmt::format("event {} ({})", event, system.function_name(FunctionKind::event, event));
 }
@@ -58,8 +67,7 @@ Signature segments_after_impact(const HybridSystem& system, const IndexVector& a
   system.value(FunctionKind::jump, after.jump, x.data(), par.data(), start.data());
   Signature candidates;
   for (const IndexVector& v : following)
-    if (std::abs(system.event(v.event, start.data(), par.data())) < fit_tolerance &&
-        has_field(successors(system, v, start, par), next_field))
+    if (is_at_event(system, v, start, par) && has_field(successors(system, v, start, par), next_field))
       candidates.push_back(v);
   if (candidates.size() == 1) return candidates;
   throw UserError(fmt::format(
@@ -91,9 +99,8 @@ void require_fit(const HybridSystem& system, const Signature& signature, const O
     const IndexVector& v = signature[static_cast<std::size_t>(s)];
     const Eigen::Map<const Eigen::VectorXd> end(x.end(s), x.shape.dimension);
     const Eigen::Map<const Eigen::VectorXd> next(x.start((s + 1) % m), x.shape.dimension);
-    const double scale = fit_tolerance * (1.0 + end.lpNorm<Eigen::Infinity>());
     const double h = system.event(v.event, end.data(), par);
-    if (!(std::abs(h) <= scale))
+    if (!(relative_event(system, x, v.event, end) <= fit_tolerance))
       throw UserError(
           fmt::format("signature {} does not fit the orbit: {} is {:.4g}, not 0, at the end of segment {}; constants "
                       "or problem are not those of the run that wrote the label, or the signature is wrong",
@@ -101,8 +108,8 @@ void require_fit(const HybridSystem& system, const Signature& signature, const O
     Eigen::VectorXd after(end.size());
     system.value(FunctionKind::jump, v.jump, end.data(), par, after.data());
     Eigen::Index worst = 0;
-    const double gap = (after - next).cwiseAbs().maxCoeff(&worst);
-    if (!(gap <= scale))
+    const double gap = (after - next).cwiseAbs().cwiseQuotient(state_moduli(x)).maxCoeff(&worst);
+    if (!(gap <= fit_tolerance))
       throw UserError(fmt::format(
           "signature {} does not fit the orbit: jump {} ({}) at the end of segment {} leads to {} = {:.6g}, segment {} "
           "starts with {:.6g}",
@@ -115,8 +122,8 @@ namespace {
 
 using Vector = Eigen::VectorXd;
 
-constexpr std::size_t most_new_segments = 4;  // of zero duration: the ways to place them are all tried
-constexpr double misfit_of_none = 1e-4;       // relative; what Newton is meant to repair is less
+constexpr std::size_t most_new_segments = 4;           // of zero duration: the ways to place them are all tried
+constexpr double misfit_of_none = level::five_digits;  // relative; what Newton is meant to repair is less
 
 Vector state(const double* x, int n) { return Eigen::Map<const Vector>(x, n); }
 
@@ -231,10 +238,9 @@ class SignatureMatch {
     double worst = 0.0;
     for (std::size_t s = 0; s < segments.size(); ++s) {
       const Vector end = end_of(segments[s]);
-      const double scale = misfit_of_none * (1.0 + end.lpNorm<Eigen::Infinity>());
       const Vector next = start_of(segments[(s + 1) % segments.size()]);
-      worst = std::max(worst, std::abs(system_.event(segments[s].index.event, end.data(), x_.par.data())) / scale);
-      worst = std::max(worst, (after(segments[s].index, end) - next).lpNorm<Eigen::Infinity>() / scale);
+      worst = std::max(worst, relative_event(system_, x_, segments[s].index.event, end) / misfit_of_none);
+      worst = std::max(worst, relative_difference(x_, after(segments[s].index, end), next) / misfit_of_none);
     }
     return std::isfinite(worst) ? worst : std::numeric_limits<double>::max();
   }

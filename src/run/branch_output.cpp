@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "files/auto_format.hpp"
 #include "files/diagnostics_file.hpp"
@@ -30,7 +31,7 @@ std::vector<std::unique_ptr<BranchOutput>> branch_outputs(const BranchSection& s
 namespace {
 
 /// Uncertainties of multipliers up to this are not told.
-constexpr double shown_uncertainty = 1e-7;
+constexpr double shown_uncertainty = level::tolerance;
 
 /// The header of a section is written with its first point, for AUTO's reader refuses a header without points.
 class PointFileOutput final : public BranchOutput {

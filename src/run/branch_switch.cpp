@@ -1,4 +1,5 @@
 #include "run/branch_switch.hpp"
+#include "base/levels.hpp"
 #include "run/solver_settings.hpp"
 
 #include <fmt/format.h>
@@ -114,7 +115,7 @@ Bifurcation double_without_section(const DefiningSystem& defining, const PathPoi
 /// Turns the direction so that DS > 0 has a meaning: the first free parameter, else duration, else state at the start
 /// of the orbit, that changes along it grows.
 void orient(const HybridSystem& system, const Orbit& x, OrbitVector& v) {
-  constexpr double rounding = 1e-4;  // of the largest one: a branch point is known to about the root of rounding
+  constexpr double rounding = level::visible;  // of the largest one
   std::vector<double> changes(v.globals.begin(), v.globals.end());
   changes.insert(changes.end(), v.durations.begin(), v.durations.end());
   for (int a = 0; a < x.shape.dimension; ++a) changes.push_back(system.unit_of(a + 1) * v.states(a, 0));

@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "continuation/solution_measure.hpp"
 #include "files/auto_format.hpp"
@@ -170,13 +171,12 @@ void BranchWriter::report_unknown_user_values(const PointLine& line) {
 /// Of the parameters. What is too small for the full precision of a double is rounding, and so is what is far below
 /// the accuracy of a value that has been larger on the branch.
 std::string BranchWriter::place(const PointLine& line) const {
-  constexpr double rounding = 1e-12;
   std::string text;
   for (std::size_t k = 0; k < section_.columns.size(); ++k) {
     const PointColumn& column = section_.columns[k];
     if (column.kind != PointColumn::Kind::parameter || (k > 0 && !is_parameter(section_.settings, column.index)))
       continue;
-    const double least = std::max(std::numeric_limits<double>::min(), rounding * largest_values_[k]);
+    const double least = std::max(std::numeric_limits<double>::min(), level::negligible * largest_values_[k]);
     text += fmt::format("{}{} = {:.10g}", text.empty() ? "" : ", ", shown_name(column),
                         std::abs(line.values[k]) < least ? 0.0 : line.values[k]);
   }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "continuation/orbit_trend.hpp"
 #include "continuation/path_follower.hpp"
@@ -27,10 +28,10 @@ namespace tchat {
 namespace {
 
 /// What data of five digits explain: a fold or codimension-two point lies so far from the value that they give it.
-constexpr double relative_move = 1e-4;
-constexpr double absolute_move = 1e-6;
+constexpr double relative_move = level::five_digits;
+constexpr double absolute_move = level::located;  // of the size that a parameter is known to have
 /// A larger move of ICP(1) than by rounding is told.
-constexpr double told_move = 1e-9;
+constexpr double told_move = level::orbit;
 /// The least part of the way from known to wanted parameter values that is tried as one step.
 constexpr double smallest_part = 1.0 / 1024;
 /// The largest change of the states in such a step, relative to 1 + max |u|: further away are other branches.
@@ -168,7 +169,7 @@ std::string values_at(const SelectedStart& selected, const HybridSystem& system,
 bool solves_but_for_condition(PathFollower& follower, const DefiningSystem& system, const Orbit& start) {
   if (follower.condition() == nullptr) return false;
   const OrbitResidual residual = residual_at(follower, system, start);
-  return residual.finite() && residual.largest() < absolute_move;
+  return residual.finite() && residual.largest() < level::located;
 }
 
 [[noreturn]] void refuse(PathFollower& follower, const DefiningSystem& system, const SelectedStart& selected,
@@ -222,6 +223,12 @@ void settle_mesh(PathFollower& follower, PathPoint& point) {
   }
 }
 
+/// Has parameter k moved from the value of the start by more than data of five digits explain?
+bool has_moved_far(const HybridSystem& system, int k, double asked, double value) {
+  const double explained = relative_move * std::abs(asked) + absolute_move * system.parameter_size(k, 0.0);
+  return std::abs(value - asked) > explained;
+}
+
 /// The free parameters beside ICP(1) that Newton's method has moved by more than data of five digits explain; "" when
 /// there is none.
 std::string moved_beside(const Orbit& start, const Orbit& found, const DefiningSystem& system, int principal,
@@ -230,7 +237,7 @@ std::string moved_beside(const Orbit& start, const Orbit& found, const DefiningS
   for (const int k : system.free_parameters()) {
     const double asked = start.par(k - 1);
     const double value = found.par(k - 1);
-    if (k == principal || !(std::abs(value - asked) > relative_move * std::abs(asked) + absolute_move)) continue;
+    if (k == principal || !has_moved_far(system.system(), k, asked, value)) continue;
     const HybridSystem& problem = system.system();
     text += fmt::format(
         "{}the first point has {} = {:.12g}, the start from {} {:.12g}: it is free, and found with {} fixed",
@@ -244,21 +251,19 @@ std::string moved_beside(const Orbit& start, const Orbit& found, const DefiningS
 /// the branch is followed to. By minimum norm it is the turning point itself. A monitor keeps its value to first order
 /// only: with an energy as ICP(1), stationary where a family begins to impact, Newton's method goes far along the
 /// family.
-void settle_turning_point(PathFollower& follower, const SelectedStart& selected, double asked, PathPoint& point,
-                          NewtonResult& result) {
+void settle_turning_point(PathFollower& follower, const HybridSystem& system, const SelectedStart& selected,
+                          double asked, PathPoint& point, NewtonResult& result) {
   constexpr int regular_iterations = 3;
-  constexpr double turning = 1e-4;
-  constexpr double same_value = 1e-9;
   const Eigen::Index k = follower.principal() - 1;
   const auto move = [&](const PathPoint& to) { return std::abs(to.orbit.par(k) - asked); };
-  const bool is_far = move(point) > relative_move * std::abs(asked) + absolute_move;
+  const bool is_far = has_moved_far(system, follower.principal(), asked, point.orbit.par(k));
   const bool is_turning =
-      result.iterations > regular_iterations && std::abs(follower.principal_direction(point)) <= turning;
+      result.iterations > regular_iterations && std::abs(follower.principal_direction(point)) <= level::visible;
   if (!result.converged() || !(is_far || is_turning)) return;
   PathPoint at = follower.make_point(selected.start.orbit);
   const NewtonResult there = follower.start_by_minimum_norm(at);
   const double difference = std::abs(at.orbit.par(k) - point.orbit.par(k));
-  const bool is_same = difference <= same_value * (1.0 + std::abs(at.orbit.par(k)));
+  const bool is_same = difference <= level::orbit * system.parameter_size(follower.principal(), at.orbit.par(k));
   if (there.converged() && (is_far ? move(at) <= move(point) : is_same)) {
     point = std::move(at);
     result = there;
@@ -280,7 +285,7 @@ FirstCorrection correct_start(PathFollower& follower, const DefiningSystem& syst
   const double asked = start.par(principal - 1);
   PathPoint point = follower.make_point(start);
   NewtonResult result = follower.start_at_fixed_parameter(point);
-  settle_turning_point(follower, selected, asked, point, result);
+  settle_turning_point(follower, problem, selected, asked, point, result);
   const std::string trouble = describe(result.status);
   FirstCorrection corrected{{}, follower.newton().history(), {}, {}};
 
@@ -311,7 +316,7 @@ FirstCorrection correct_start(PathFollower& follower, const DefiningSystem& syst
                          describe(result.status), followed));
     const double found = point.orbit.par(principal - 1);
     const double move = std::abs(found - asked);
-    if (move > relative_move * std::abs(asked) + absolute_move && !settings.start_may_move)
+    if (has_moved_far(problem, principal, asked, found) && !settings.start_may_move)
       corrected.refusal = fmt::format(
           "no orbit was found at {} = {:.10g}, the value of the start from {}: {} with ICP(1) fixed; with it free "
           "there "
@@ -320,7 +325,7 @@ FirstCorrection correct_start(PathFollower& follower, const DefiningSystem& syst
           "begin where an orbit is known and continue to this value (UZR={{{}: {:.10g}}}), or take the one found with "
           "ICPMOVE=1",
           name, asked, selected.source, trouble, name, found, followed, name, asked);
-    if (move > told_move * (1.0 + std::abs(asked)))
+    if (move > told_move * problem.parameter_size(principal, asked))
       corrected.note = fmt::format(
           "the first point has {} = {:.12g}, the start from {} {:.12g}: with ICP(1) fixed there was no convergence",
           name, found, selected.source, asked);
@@ -337,7 +342,7 @@ FirstCorrection correct_start(PathFollower& follower, const DefiningSystem& syst
 namespace {
 
 /// A matrix with a smaller scaled reciprocal condition leaves some direction undetermined.
-constexpr double singular_condition = 1e-12;
+constexpr double singular_condition = level::negligible;
 /// The stored direction is a tangent when its angle to the tangent is smaller than about 2 degrees.
 constexpr double parallel = 0.999;
 
@@ -385,13 +390,13 @@ void refuse_singular(PathFollower& follower, const DefiningSystem& defining, con
 bool solves_without_correction(PathFollower& follower, const Orbit& stored, const RunSettings& settings) {
   const std::vector<NewtonIteration>& attempt = follower.newton().history();
   if (attempt.empty()) return follower.solves(stored);
-  constexpr double interpolated = 1e-8;
+  constexpr double interpolated = level::differences;
   return attempt.front().residual <= std::max(newton_settings(settings).tolerance_states, interpolated);
 }
 
 /// Newton's method may go far along the branch that crosses, whose orbits solve the equations as well.
 bool has_drifted(const Orbit& stored, const Orbit& corrected) {
-  constexpr double far = 1e-5;  // what the digits of files and the errors of a label move is much smaller
+  constexpr double far = level::same;  // what the digits of files and the errors of a label move is much smaller
   return (corrected.states - stored.states).cwiseAbs().maxCoeff() > far * (1.0 + stored.states.cwiseAbs().maxCoeff());
 }
 

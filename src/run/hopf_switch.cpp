@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
@@ -34,9 +35,9 @@ using Complex = std::complex<double>;
 /// A pair whose sum is a larger share of its size is on neither side of the imaginary axis by the accuracy of a label.
 constexpr double on_axis = 1e-3;
 /// The share of its scale by which the event function of a section through the equilibrium may miss zero there.
-constexpr double on_section = 1e-5;
+constexpr double on_section = level::same;
 /// An oscillation that moves across the section by a smaller share of what it moves lies in it.
-constexpr double in_section = 1e-6;
+constexpr double in_section = level::located;
 
 /// The eigenvector of i omega.
 struct Oscillation {
@@ -174,7 +175,7 @@ double chosen_frequency(const DefiningSystem& equilibria, const Orbit& x, const 
   const std::vector<Complex> eigenvalues = equilibrium_eigenvalues(equilibria, x).values;
   double largest = 0.0;
   for (const Complex& value : eigenvalues) largest = std::max(largest, std::abs(value));
-  constexpr double zero = 1e-7;  // of the largest: a double zero is computed to the root of rounding
+  constexpr double zero = level::double_zero;  // of the largest: a double zero is computed to the root of rounding
   std::vector<double> omegas;
   for (const Complex& value : eigenvalues)
     if (value.imag() > zero * largest && std::abs(value.real()) <= on_axis * value.imag())

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "files/dat_file.hpp"
 #include "files/replaced_file.hpp"
@@ -77,7 +78,7 @@ Eigen::MatrixXd stack(const Eigen::MatrixXd& states, const OrbitShape& shape) {
 /// The mesh that the rows lie on, when they divide NTST intervals of different length into equal parts, a multiple of
 /// NCOL on each; empty when there is none.
 std::vector<double> mesh_of_rows(const DatFile& data, const OrbitShape& shape) {
-  constexpr double rounding = 1e-9;  // of a step: rows may be written with 15 digits
+  constexpr double rounding = level::orbit;  // of a step: rows may be written with 15 digits
   const int rows = static_cast<int>(data.tau.size()) - 1;
   if (rows < 1 || rows % (shape.nodes() - 1) != 0) return {};
   const int parts = rows / shape.intervals;

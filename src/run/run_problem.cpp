@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "continuation/continuation_run.hpp"
 #include "files/solution_file.hpp"
@@ -99,7 +100,7 @@ std::string direction_text(const BranchSetup& setup, const SelectedStart& start,
                                                 "that had DS < 0 with DS < 0)\n",
                                                 -step));
   const double rate = step * setup.follower->principal_direction(setup.start.point);
-  constexpr double rounding = 1e-7;  // of a unit tangent: the parameter has an extremum
+  constexpr double rounding = level::tolerance;  // of a unit tangent: the parameter has an extremum
   const bool is_known = std::abs(rate) > rounding * std::abs(step);
   // At a branch point the computed tangent is any mixture of those of both branches.
   const bool is_single = !start_is_branch_point(start);

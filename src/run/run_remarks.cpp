@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 
+#include "base/levels.hpp"
 #include "base/words.hpp"
 #include "files/run_files.hpp"
 #include "model/events.hpp"
@@ -89,16 +90,18 @@ std::string monitor_lists(const RunSettings& settings, const SegmentsByEvent& mi
 /// Is the event's function negative somewhere on segment s, in any return of a torus? Then monitoring it would make
 /// every orbit inadmissible.
 bool is_negative(const HybridSystem& system, int event, const Orbit& x, int s, int segments_per_return) {
-  constexpr double rounding = 1e-6;
+  const int first = s;
   double least = 0.0;
-  double scale = 1.0;
+  double scale = 0.0;
   for (; s < x.shape.segments; s += segments_per_return)
     for (int k = 0; k < x.shape.nodes_of(s); ++k) {
       const double h = system.event(event, x.node(s, k), x.par.data());
       if (!(h >= least)) least = h;
       scale = std::max(scale, std::abs(h));
     }
-  return !(least >= -rounding * scale);
+  const EventAt at = event_at(system, event, x.start(first), x.par.data());
+  scale = std::max(scale, at.scale(x.start(first), state_moduli(x)));
+  return !(least >= -level::located * scale);
 }
 
 SegmentsByEvent missing_events(const HybridSystem& system, const RunSettings& settings, const Orbit& start) {
@@ -199,7 +202,7 @@ bool changes_nothing(std::size_t segment, const RunSettings& settings, const Hyb
 
 /// Is a contact alone there? At the end of a segment it is where that end changes nothing.
 bool is_free_of_other_events(const UserPointKind& contact, const RunSettings& settings, const HybridSystem& system) {
-  constexpr double at_the_end = 1e-6;
+  constexpr double at_the_end = level::located;
   if (contact.tau > at_the_end && contact.tau < 1.0 - at_the_end) return true;
   const std::size_t m = settings.segments.size();
   const auto segment = static_cast<std::size_t>(contact.segment - 1);

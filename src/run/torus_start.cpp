@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
@@ -72,7 +73,7 @@ void check_events(const HybridSystem& system, const RunSettings& settings, const
     double nearest = std::numeric_limits<double>::infinity(), h = 0.0;
     for (int i = s; i < x.shape.segments; i += m) {
       const EventAt at = event_at(system, event, x.end(i), x.par.data());
-      const double distance = std::abs(at.h) / std::max(at.scale(x.end(i)), 1e-300);
+      const double distance = std::abs(at.h) / std::max(at.scale(x.end(i)), std::numeric_limits<double>::min());
       if (!(distance < nearest)) continue;
       nearest = distance;
       h = at.h;
@@ -277,11 +278,10 @@ std::optional<int> fitting_harmonics(const RunSettings& one_return, const TorusS
 }
 
 std::string rough_torus(const RunSettings& one_return, const TorusSystem& system, const Orbit& x) {
-  constexpr double rough = 1e-4;
   const int harmonics = (system.orbits() - 1) / 2;
   const bool may_grow = one_return.harmonic_tolerance > 0.0 && harmonics < most_harmonics(one_return);
   const double last = last_harmonics(system, x);
-  if (may_grow || last < rough) return "";
+  if (may_grow || last < level::visible) return "";
   const std::string fraction = near_fraction(TorusSystem::rotation(x));
   return fmt::format(
       "the last of {} harmonics are {:.1e} of the torus: it is about to lose its smoothness, or locks to a periodic "

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/levels.hpp"
 #include "model/index_vector.hpp"
 #include "model/parameter_vector.hpp"
 #include "settings/problem_type.hpp"
@@ -107,9 +108,9 @@ struct RunSettings {
   int full_newton = 3;                                   ///< NWTN
   int jacobian = 0;                                      ///< JAC, kept
   int adapt_step_every = 1;                              ///< IADS
-  double tolerance_parameters = 1e-7;                    ///< EPSL
-  double tolerance_states = 1e-7;                        ///< EPSU
-  double tolerance_special = 1e-7;                       ///< EPSS
+  double tolerance_parameters = level::tolerance;        ///< EPSL
+  double tolerance_states = level::tolerance;            ///< EPSU
+  double tolerance_special = level::tolerance;           ///< EPSS
   double step = 0.01;                                    ///< DS
   double step_min = 0.0;                                 ///< DSMIN
   double step_max = 0.1;                                 ///< DSMAX
@@ -122,7 +123,7 @@ struct RunSettings {
   std::vector<int> fixed;                                ///< GCIFIXED, kept
   std::vector<SegmentSettings> segments;
 
-  double harmonic_tolerance = 1e-7;  ///< HARMTOL, of the last harmonics of a torus; 0: their number stays
+  double harmonic_tolerance = level::tolerance;  ///< HARMTOL, of the last harmonics of a torus; 0: their number stays
   double error_bound = 1e-2;         ///< ERRMAX, of the error between mesh points and of a known multiplier; 0: none
   bool own_meshes = false;           ///< OWNMESH, of each segment
   int harmonics = 0;                 ///< NHARM, of a torus; 0: as the start has

@@ -26,11 +26,13 @@ constexpr std::size_t most_compared = 1000;
 
 bool repeats(const AttractorSample& sample) { return sample.kind == AttractorKind::periodic; }
 
-/// A state that hardly moves is compared on the scale of the others.
+double size_of(const AttractorSample& sample) {
+  return sample.identity.size() > 0 ? sample.identity.cwiseAbs().maxCoeff() : 0.0;
+}
+
 VectorXd scale_of(const AttractorSample& a, const AttractorSample& b) {
   const VectorXd range = a.range.cwiseMax(b.range);
-  const double floor = std::max(1e-3 * range.maxCoeff(), 1e-12);
-  return range.array() + floor;
+  return floored_range(range, std::max(size_of(a), size_of(b)));
 }
 
 /// States of b turned so that they belong to those of a: a signature may repeat itself within a period. Empty when the

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <limits>
 
 #include "model/events.hpp"
 #include "motion/orbit_flow.hpp"
@@ -20,9 +21,9 @@ constexpr double slowest = 1e12;  // of W: slower orbits capture nothing
 
 /// W, by doubling: W_2k = W_k + (M^k)' W_k M^k.
 MatrixXd capture_weight(MatrixXd m, const VectorXd& range) {
-  const double floor = std::max(1e-3 * range.maxCoeff(), 1e-12);
-  MatrixXd w = (range.array() + floor).square().inverse().matrix().asDiagonal();
-  for (int doubling = 0; doubling < 40 && w.allFinite() && m.cwiseAbs().maxCoeff() > 1e-200; ++doubling) {
+  constexpr double vanished = std::numeric_limits<double>::min();
+  MatrixXd w = range.array().square().inverse().matrix().asDiagonal();
+  for (int doubling = 0; doubling < 40 && w.allFinite() && m.cwiseAbs().maxCoeff() > vanished; ++doubling) {
     w = (w + m.transpose() * w * m).eval();
     m = (m * m).eval();
   }
@@ -92,9 +93,8 @@ CaptureRegion capture_region(const HybridSystem& system, const AttractorSample& 
   region.centre = sample.last.x;
   const ReturnMap map = return_map(system, sample.signature, region.centre, par);
   if (!map.ok || !map.derivative.allFinite()) return region;
-  region.weight = capture_weight(map.derivative, sample.range);
-  const double floor = std::max(1e-3 * sample.range.maxCoeff(), 1e-12);
-  const VectorXd range = sample.range.array() + floor;
+  const VectorXd range = floored_range(sample.range, sample.last.x.cwiseAbs().maxCoeff());
+  region.weight = capture_weight(map.derivative, range);
   if (!region.weight.allFinite() || region.weight.norm() * range.squaredNorm() > slowest) return region;
 
   const CaptureProbe probe(system, par, region, map.segments.back().end, range);

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "files/dat_file.hpp"
 #include "model/events.hpp"
 #include "model/parameter_vector.hpp"
@@ -70,7 +71,7 @@ RecordedPeriod recorded_period(const std::vector<SimulatedSegment>& segments, st
 namespace {
 
 constexpr double no_bound = 1e300;
-constexpr double surface = 1e-9;  // h below minus this, times its scale, is negative
+constexpr double surface = level::orbit;  // h below minus this, times its scale, is negative
 
 /// The values of an event function along a segment.
 struct EventValues {
@@ -212,9 +213,9 @@ RunSettings default_orbit_settings(const RunSettings& given) {
   const auto prefer = [&](auto member, auto value) {
     if (given.*member == plain.*member) settings.*member = value;
   };
-  prefer(&RunSettings::tolerance_parameters, 1e-10);
-  prefer(&RunSettings::tolerance_states, 1e-10);
-  prefer(&RunSettings::tolerance_special, 1e-9);
+  prefer(&RunSettings::tolerance_parameters, level::converged);
+  prefer(&RunSettings::tolerance_states, level::converged);
+  prefer(&RunSettings::tolerance_special, level::orbit);
   prefer(&RunSettings::derivative_order, 2);
   return settings;
 }

@@ -7,6 +7,8 @@
 #include <limits>
 #include <string_view>
 
+#include "base/levels.hpp"
+
 namespace tchat {
 
 namespace {
@@ -136,6 +138,12 @@ std::string one_line(std::string text) {
 }
 
 }  // namespace
+
+Eigen::VectorXd floored_range(const Eigen::VectorXd& range, double size) {
+  constexpr double hardly = 1e-3;  // of the largest range
+  const double least = std::max(level::negligible * size, std::numeric_limits<double>::min());
+  return range.array() + std::max(hardly * range.maxCoeff(), least);
+}
 
 std::string hashed_line(const std::string& text) { return fmt::format("{} {:016x}\n", text, line_hash(text)); }
 

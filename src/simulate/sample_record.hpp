@@ -58,6 +58,10 @@ struct AttractorSample {
   std::string message;    ///< why it has not settled, one line; empty when there is nothing to say
 };
 
+/// The scale of differences of states: a state that hardly moves is compared on that of the others, and none on that of
+/// rounding. `size`: of the largest state.
+Eigen::VectorXd floored_range(const Eigen::VectorXd& range, double size);
+
 /// Thrown where a value has been given up because of a signal.
 class SampleInterrupted : public ComputationError {
  public:

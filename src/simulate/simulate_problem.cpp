@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "files/auto_format.hpp"
 #include "files/dat_file.hpp"
@@ -325,7 +326,7 @@ std::string obstacle(const HybridSystem& system, const SimulationResult& result,
   if (!result.is_periodic()) return "no periodic orbit was found";
   if (!orbit.converged) return "the orbit could not be refined";
   for (Eigen::Index i = 0; i < orbit.advance.size(); ++i)
-    if (std::abs(orbit.advance(i)) > 1e-9 * (1.0 + std::abs(orbit.start(i))))
+    if (std::abs(orbit.advance(i)) > level::orbit * std::max(orbit.sizes(i), std::abs(orbit.start(i))))
       return fmt::format("{} does not return; `tchat run` needs a problem without that state",
                          system.state_name(static_cast<int>(i) + 1));
   return "";

@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "model/events.hpp"
 #include "motion/attractor_search.hpp"
@@ -34,7 +35,7 @@ constexpr std::size_t samples_following = 12;  // of a segment, among which the 
 constexpr long first_decision = 64;            // events after which exponents may tell the kind of a motion
 constexpr long last_decision = 4096;
 constexpr long events_of_exponents = 512;     // of an attractor whose kind is known
-constexpr double same_time = 1e-6;            // as a share of the longest segment
+constexpr double same_time = level::located;  // as a share of the longest segment
 constexpr std::size_t identity_points = 400;  // of a motion that does not repeat itself
 
 /// A recorded state.

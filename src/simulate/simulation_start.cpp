@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "base/words.hpp"
 #include "files/dat_file.hpp"
@@ -219,7 +220,7 @@ SimulationSettings simulation_settings(const SimulationRequest& request, const s
 
 namespace {
 
-constexpr double orbit_tolerance = 1e-4;  // of a label or a .dat, relative
+constexpr double orbit_tolerance = level::five_digits;  // of a label or a .dat, relative
 
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/levels.hpp"
 #include "model/hybrid_system.hpp"
 #include "model/parameter_vector.hpp"
 #include "motion/hybrid_simulation.hpp"
@@ -38,8 +39,8 @@ struct SimulationRequest {
   StartSide side;  ///< --after-event, --before-event; else of a label or .dat after, of other states not given
 
   SimulationPlan plan;
-  double tolerance = 1e-10;  ///< relative, of one integration step
-  double wait = 1000.0;      ///< longest time without an event
+  double tolerance = level::converged;  ///< relative, of one integration step
+  double wait = 1000.0;                 ///< longest time without an event
   double contact = 1e-3;
   int rows = 200;  ///< of the trajectory, for each segment
   bool stiff = false;

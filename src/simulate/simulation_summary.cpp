@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "model/events.hpp"
 
 namespace tchat {
@@ -17,7 +18,7 @@ namespace {
 using Eigen::VectorXd;
 using Kind = StartNotice::Kind;
 
-constexpr double rounding = 1e-6;  // of the state at a label or in a .dat, relative
+constexpr double rounding = level::located;  // of the state at a label or in a .dat, relative
 
 /// h at x; 0 where it cannot be told from zero.
 double clear_value(const HybridSystem& system, int event, const VectorXd& x, const VectorXd& par,
@@ -272,7 +273,7 @@ std::string orbit_text(const HybridSystem& system, const FoundOrbit& orbit) {
   }
   text += "  start";
   // Of the largest state 13 digits are shown; what is smaller than the last of them is rounding.
-  const double rounding = 1e-13 * orbit.start.cwiseAbs().maxCoeff();
+  const double rounding = level::rounding_of_sums * orbit.start.cwiseAbs().maxCoeff();
   const Eigen::Index shown_states = std::min(orbit.start.size(), static_cast<Eigen::Index>(most_shown));
   for (Eigen::Index i = 0; i < shown_states; ++i)
     text += fmt::format("{} {} = {:.13g}", i > 0 ? "," : "", system.state_name(static_cast<int>(i) + 1),

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/levels.hpp"
 #include "model/events.hpp"
 #include "orbit/admissibility.hpp"
 #include "orbit/condensed_system.hpp"
@@ -18,7 +19,7 @@ namespace tchat {
 namespace {
 
 /// A pair whose imaginary parts are smaller, relatively, is real.
-constexpr double complex_level = 1e-7;
+constexpr double complex_level = level::double_zero;
 
 bool trusted(const FloquetMultipliers& multipliers) {
   return multipliers.valid && multipliers.structural <= structural_bound;
@@ -93,9 +94,9 @@ FoldTest::FoldTest(int parameter, const std::vector<int>& free_parameters, const
 }
 
 TestValue FoldTest::evaluate(const TestedPoint& point) const {
-  constexpr double level = 1e-10;  // of a tangent of unit length, which Newton's tolerances leave
-  if (is_monitor_) return TestValue::of(point.principal_rate, level);
-  return TestValue::of(is_duration_ ? point.tangent.durations(index_) : point.tangent.globals(index_), level);
+  if (is_monitor_) return TestValue::of(point.principal_rate, level::converged);
+  return TestValue::of(is_duration_ ? point.tangent.durations(index_) : point.tangent.globals(index_),
+                       level::converged);
 }
 
 /// The branch also turns where h_x f = 0: at a section that becomes tangent its two ways through the orbit meet, while
@@ -125,8 +126,7 @@ std::string FoldTest::objection(const TestedPoint& point) const {
 }
 
 TestValue BranchPointTest::evaluate(const TestedPoint& point) const {
-  constexpr double level = 1e-13;  // what rounding makes of a singular matrix
-  return TestValue::of(point.singular_distance, level);
+  return TestValue::of(point.singular_distance, level::rounding_of_sums);
 }
 
 std::string BranchPointTest::objection(const TestedPoint& point) const {
@@ -282,13 +282,12 @@ bool points_at_surface(const HybridSystem& system, const tchat_sliding& mode, in
 
 /// Is the surface of an event function that of the mode, at a state that lies on the event's?
 bool is_surface(const HybridSystem& system, const tchat_sliding& mode, int event, const double* x, const double* par) {
-  constexpr double parallel = 1.0 - 1e-9;
-  constexpr double on_surface = 1e-6;  // a located contact is known to EPSS
+  constexpr double parallel = 1.0 - level::orbit;
   if (event == mode.surface) return true;
   if (event == no_function) return false;
   const EventAt own = event_at(system, mode.surface, x, par);
   const EventAt other = event_at(system, event, x, par);
-  return std::abs(own.h) <= on_surface * own.scale(x) &&
+  return std::abs(own.h) <= level::located * own.scale(x) &&
          std::abs(own.gradient.dot(other.gradient)) >= parallel * own.gradient.norm() * other.gradient.norm();
 }
 

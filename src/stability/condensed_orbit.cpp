@@ -4,6 +4,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "linear/dense_matrix.hpp"
 #include "model/scales.hpp"
 #include "orbit/mesh_adaptation.hpp"
@@ -99,8 +100,7 @@ const RowWeights& CondensedOrbit::residual(const Orbit& x) {
 
 bool CondensedOrbit::correct(const Eigen::VectorXd& q, Orbit& x) {
   constexpr int most_iterations = 10;
-  constexpr double arrived = 1e-11, near = 1e-6;
-  double last = near;
+  double last = level::stalled;
   OrbitVector change = forms_.make_vector();
   change.set_zero();
   std::optional<Eigen::Index> parameter;
@@ -114,11 +114,11 @@ bool CondensedOrbit::correct(const Eigen::VectorXd& q, Orbit& x) {
       if (!parameter) parameter = forms_.find_critical(critical_, vectors) ? forms_.parameter_across(vectors) : 0;
       forms_.solve_across(rows, q, *parameter, change);
     }
-    const double moved = std::max(change.states.lpNorm<Eigen::Infinity>(), change.durations.lpNorm<Eigen::Infinity>());
-    const double size = moved / (1.0 + x.states.cwiseAbs().maxCoeff());
+    const double size = std::max(change.states.lpNorm<Eigen::Infinity>() / (1.0 + x.states.cwiseAbs().maxCoeff()),
+                                 change.durations.lpNorm<Eigen::Infinity>() / std::abs(x.period()));
     if (!std::isfinite(size) || !change.globals.allFinite()) return false;
     advance(x, 1.0, change, system_.free_parameters());
-    if (size < arrived || (last < near && size > 0.5 * last)) return true;
+    if (size < level::converged || (last < level::stalled && size > 0.5 * last)) return true;
     last = size;
   }
   return false;

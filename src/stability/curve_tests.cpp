@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "base/levels.hpp"
 #include "orbit/admissibility.hpp"
 #include "orbit/condensed_system.hpp"
 #include "orbit/orbit.hpp"
@@ -21,7 +22,7 @@ namespace tchat {
 
 namespace {
 
-constexpr double at_resonance = 1e-6;  // of the cosine at a located resonance
+constexpr double at_resonance = level::located;  // of the cosine at a located resonance
 
 bool has_double_multiplier(const CriticalPair& pair) { return std::abs(std::abs(pair.cosine()) - 1.0) <= at_resonance; }
 
@@ -132,9 +133,8 @@ class MirroredResonanceTest final : public TestFunction {
   std::string name() const override { return "resonance at the mirror image"; }
   TestValue evaluate(const TestedPoint& point) const override {
     constexpr double nearby = 0.5;
-    constexpr double level = 1e-6;  // the root of what rounding makes of a cosine
     const double square = 2.0 * std::abs(std::abs(pair_.cosine()) - 1.0);
-    const TestValue angle = TestValue::of(std::copysign(std::sqrt(square), point.singular_distance), level);
+    const TestValue angle = TestValue::of(std::copysign(std::sqrt(square), point.singular_distance), level::located);
     return square < 2.0 * nearby ? angle : TestValue::undefined(angle.sign);
   }
   bool is_genuine(const TestedPoint&) const override { return has_double_multiplier(pair_); }
@@ -155,8 +155,7 @@ class PassedResonanceTest final : public TestFunction {
   explicit PassedResonanceTest(const CriticalPair& pair) : pair_(pair) {}
   std::string name() const override { return "angle through 0 or pi"; }
   TestValue evaluate(const TestedPoint&) const override {
-    constexpr double level = 1e-5;  // at a located resonance of another kind it is none
-    return TestValue::of(pair_.turning(), level);
+    return TestValue::of(pair_.turning(), level::same);  // at a located resonance of another kind it is none
   }
   bool is_only_reported() const override { return true; }
   SpecialPoint classify(const TestedPoint&, bool) const override {
@@ -224,8 +223,7 @@ TestValue product_beside(const TestedPoint& point, int target, const CriticalPai
   const TestValue product = multiplier_product(point, target);
   if (pair == nullptr || !product.value) return product;
   const double of_pair = 2.0 - 2.0 * target * pair->cosine();
-  constexpr double halves_meet = 1e-6;
-  if (!(of_pair > halves_meet)) return TestValue::undefined();
+  if (!(of_pair > level::located)) return TestValue::undefined();
   return TestValue::of(*product.value / of_pair, product.zero_level / of_pair);
 }
 
@@ -288,8 +286,7 @@ class CubicTermTest final : public TestFunction {
   }
   /// Where the other multiplier does not act on the critical one there is no pole, and what vanishes is the factor.
   bool is_genuine(const TestedPoint& point) const override {
-    constexpr double surely_apart = 1e-5;
-    return multiplier_distance(point.multipliers, 1.0) > surely_apart;
+    return multiplier_distance(point.multipliers, 1.0) > level::on_circle;
   }
   SpecialPoint classify(const TestedPoint&, bool) const override {
     return {type_, {}, false, pair_ == nullptr ? "the normal form's c is zero" : "the normal form's Re d is zero"};
@@ -316,10 +313,9 @@ class HalvesMeetTest final : public TestFunction {
     return TestValue::of(sum / (1.0 + largest_state(point.orbit)), orbit_accuracy);
   }
   bool is_genuine(const TestedPoint& point) const override {
-    constexpr double met = 1e-4;
     double largest = 0.0;
     for_differences(point, [&](double difference) { largest = std::max(largest, std::abs(difference)); });
-    return largest <= met * (1.0 + largest_state(point.orbit));
+    return largest <= level::visible * (1.0 + largest_state(point.orbit));
   }
   SpecialPoint classify(const TestedPoint&, bool) const override {
     return {PointType::doubled_fold_end, {}, true, "the halves of the doubled orbit meet: the curve begins there"};

@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/levels.hpp"
 #include "linear/dense_matrix.hpp"
 #include "orbit/condensed_system.hpp"
 #include "orbit/orbit.hpp"
@@ -174,16 +175,13 @@ class MirroredFrequencyTest final : public TestFunction {
   std::string name() const override { return "Bogdanov-Takens at the mirror image"; }
   TestValue evaluate(const TestedPoint& point) const override {
     constexpr double nearby = 0.1;
-    constexpr double level = 1e-7;  // the root of what rounding makes of omega^2
     const double square = std::abs(pair_.relative_square());
-    const TestValue omega = TestValue::of(std::copysign(std::sqrt(square), point.singular_distance), level);
+    const TestValue omega =
+        TestValue::of(std::copysign(std::sqrt(square), point.singular_distance), level::double_zero);
     return square < nearby ? omega : TestValue::undefined(omega.sign);
   }
   /// omega is known to the accuracy of its location.
-  bool is_genuine(const TestedPoint&) const override {
-    constexpr double at_double_zero = 1e-10;
-    return std::abs(pair_.relative_square()) <= at_double_zero;
-  }
+  bool is_genuine(const TestedPoint&) const override { return std::abs(pair_.relative_square()) <= level::converged; }
   bool singular_at_zero() const override { return true; }
   SpecialPoint classify(const TestedPoint&, bool) const override {
     return {PointType::bogdanov_takens,
@@ -202,8 +200,7 @@ class PassedFrequencyTest final : public TestFunction {
   explicit PassedFrequencyTest(const HopfPair& pair) : pair_(pair) {}
   std::string name() const override { return "omega through 0"; }
   TestValue evaluate(const TestedPoint&) const override {
-    constexpr double level = 1e-5;  // at a located point of another kind it is none
-    return TestValue::of(pair_.turning(), level);
+    return TestValue::of(pair_.turning(), level::same);  // at a located point of another kind it is none
   }
   bool is_only_reported() const override { return true; }
   SpecialPoint classify(const TestedPoint&, bool) const override {
@@ -332,14 +329,13 @@ class ZeroEigenvalueTest final : public TestFunction {
   }
   /// w^T f_p = 0 for both parameters, w the left null vector, is a branch point in either.
   bool is_genuine(const TestedPoint& point) const override {
-    constexpr double in_range = 1e-6;
     const int n = system_.dimension(), field = system_.signature().front().field;
     Eigen::VectorXd f(n);
     Eigen::MatrixXd by_state(n, n), by_parameter(n, system_.free_count());
     system_.system().first(FunctionKind::field, field, point.orbit.end(0), point.orbit.par.data(),
                            system_.free_parameters(), f.data(), by_state.data(), by_parameter.data());
     const Eigen::VectorXd w = eigenvector(by_state * by_state.transpose(), 0.0).real().normalized();
-    return (by_parameter.transpose() * w).norm() > in_range * by_parameter.norm();
+    return (by_parameter.transpose() * w).norm() > level::located * by_parameter.norm();
   }
   SpecialPoint classify(const TestedPoint&, bool) const override {
     return {PointType::equilibrium_fold, {}, false, "fold of equilibria: the eigenvalue 0"};

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "base/levels.hpp"
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
 #include "orbit/admissibility.hpp"
@@ -49,11 +51,8 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 using RowMajorBlock = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
-constexpr double stability_tolerance = 1e-5;
-/// Of the largest modulus.
-constexpr double eigenvalue_rounding = 1e-14;
 /// h_x f / (|h_x| |f|) below which a multiplier may be 0/0: with errors of `no_transversality` it is then off by 1e-5.
-constexpr double near_grazing = 1e-4;
+constexpr double near_grazing = level::visible;
 /// A multiplier that an error moves further, as a chord of the Riemann sphere where h_x f = 0, is not known.
 constexpr double unknown = 1e-2;
 /// A larger one at h_x f = 0 is infinite.
@@ -120,7 +119,6 @@ void sort_by_interest(std::vector<std::complex<double>>& values) {
 /// Does contact segment s last no time, in a field that is continuous where it begins? Perturbations then pass it as if
 /// it were not there.
 bool is_passed(const DefiningSystem& defining, const Orbit& x, int s) {
-  constexpr double continuous = 1e-6;
   const int m = x.shape.segments;
   if (m < 2 || !defining.is_contact_segment(s) || !contact_lasts_no_time(x, s)) return false;
   const int before = defining.signature()[static_cast<std::size_t>((s + m - 1) % m)].field;
@@ -129,7 +127,7 @@ bool is_passed(const DefiningSystem& defining, const Orbit& x, int s) {
   Vector entered(x.shape.dimension);
   defining.system().value(FunctionKind::field, before, x.start(s), x.par.data(), left.data());
   defining.system().value(FunctionKind::field, own, x.start(s), x.par.data(), entered.data());
-  return (entered - left).norm() <= continuous * left.norm();
+  return (entered - left).norm() <= level::located * left.norm();
 }
 
 /// The gradient of the section at the end of segment s; before and after a contact that is passed the orbit touches the
@@ -154,7 +152,7 @@ int FloquetMultipliers::stable_count() const {
   double largest = 0.0;
   for (const auto& mu : list) largest = std::max(largest, std::abs(mu));
   const auto stable = std::count_if(list.begin(), list.end(), [&](const auto& mu) {
-    return are_eigenvalues ? mu.real() <= eigenvalue_rounding * largest : std::abs(mu) <= 1.0 + stability_tolerance;
+    return are_eigenvalues ? mu.real() <= level::rounding * largest : std::abs(mu) <= 1.0 + level::on_circle;
   });
   return static_cast<int>(stable + static_cast<std::ptrdiff_t>(values.size() - list.size()));
 }
@@ -263,12 +261,11 @@ void FloquetSolver::tilt_blocks() {
 
 /// May the two directions make a difference? Not where the flow stands still and there is none.
 bool FloquetSolver::is_tilted() const {
-  constexpr double none = 1e-7;
   for (std::size_t s = 0; s < ends_.size(); ++s) {
     const double tilt = ends_[s].tilt.norm();
     const double share = std::max(ends_[s].e_across.norm() / blocks_.e[s].norm(),  //
                                   ends_[s].a_across.norm() / blocks_.a[s].norm());
-    if (std::isinf(tilt) || tilt * share > none) return true;
+    if (std::isinf(tilt) || tilt * share > level::tolerance) return true;
   }
   return false;
 }
@@ -465,7 +462,7 @@ Eigen::VectorXd exponents(const Eigen::MatrixXd& matrices, const Eigen::MatrixXd
     if (j < transient) continue;
     const double t = (j - transient + 0.5) / returns;
     const double weight = std::exp(-1.0 / (t * (1.0 - t)));
-    sum += weight * lengths.cwiseMax(1e-300).array().log().matrix();
+    sum += weight * lengths.cwiseMax(std::numeric_limits<double>::min()).array().log().matrix();
     weights += weight;
   }
   return sum / weights;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/levels.hpp"
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
 #include "model/scales.hpp"
@@ -360,13 +361,11 @@ SpecialPoint AccelerationTest::classify(const TestedPoint&, bool) const {
 }
 
 TestValue GrazingTurnTest::evaluate(const TestedPoint& point) const {
-  constexpr double level = 1e-10;  // of a tangent of unit length, which Newton's tolerances leave
-  return TestValue::of(point.tangent.globals(parameter_), level);
+  return TestValue::of(point.tangent.globals(parameter_), level::converged);
 }
 
 bool GrazingTurnTest::is_genuine(const TestedPoint& point) const {
-  constexpr double crossing = 1e-6;
-  return std::abs(point.singular_distance) > crossing;
+  return std::abs(point.singular_distance) > level::located;
 }
 
 SpecialPoint GrazingTurnTest::classify(const TestedPoint&, bool) const {

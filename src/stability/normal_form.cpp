@@ -3,8 +3,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
+#include "base/levels.hpp"
 #include "orbit/mesh_adaptation.hpp"
 #include "orbit/return_map.hpp"
 #include "stability/condensed_orbit.hpp"
@@ -41,20 +43,20 @@ std::optional<BranchingForm> with_errors_of_place(BranchingForm form, const Bran
 
 std::optional<BranchingForm> branching_form(SingularEquations& equations, Orbit& x) {
   constexpr int most_steps = 8;
-  constexpr double arrived = 1e-10, near = 1e-6, farthest = 0.1, rounding = 1e-13;
+  constexpr double farthest = 0.1;
   const double size = 1.0 + x.states.cwiseAbs().maxCoeff();
   std::optional<BranchingForm> before;
   double last = farthest;
   for (int k = 0; k < most_steps; ++k) {
     const std::optional<ReducedEquation> g = equations.reduce(x);
     if (!g || !(g->square_of_rate() > 0.0)) return std::nullopt;
-    if (before) return with_errors_of_place(form_of(*g, equations.cubic()), *before, rounding * size);
+    if (before) return with_errors_of_place(form_of(*g, equations.cubic()), *before, level::rounding_of_sums * size);
     const Eigen::Vector2d change = change_to_centre(*g);
     const double length =
         std::max(equations.find_step(change(0), change(1)) / size, std::abs(change(1)) / equations.parameter_size(x));
     if (!(length < farthest)) return std::nullopt;
-    const bool is_rounding = last < near && length > 0.5 * last;  // that the equations may amplify
-    if (length < arrived || is_rounding) before = form_of(*g, equations.cubic());
+    const bool is_rounding = last < level::stalled && length > 0.5 * last;  // that the equations may amplify
+    if (length < level::converged || is_rounding) before = form_of(*g, equations.cubic());
     last = length;
     equations.move(x);
   }
@@ -177,7 +179,7 @@ Orbit along_branch(const DefiningSystem& system, const Orbit& x, const OrbitVect
 /// it changes by far more than the orbit.
 std::optional<Found> form_beside(const DefiningSystem& system, CondensedOrbit& coarse, const Orbit& x,
                                  const OrbitVector& tangent, const Orbit& other, Complex critical) {
-  for (const double size : {1e-5, 1e-7, 1e-9})
+  for (const double size : {level::same, level::tolerance, level::orbit})
     if (std::optional<Found> found = form_of(system, coarse, along_branch(system, x, tangent, other, size), critical))
       return found;
   return std::nullopt;
@@ -229,7 +231,7 @@ namespace {
 double amplification(const FloquetMultipliers& multipliers, Complex target) {
   double nearest = 1.0;
   for (const Complex& mu : multipliers.nontrivial()) nearest = std::min(nearest, std::abs(mu - target));
-  return 1.0 / std::max(nearest, 1e-300);
+  return 1.0 / std::max(nearest, std::numeric_limits<double>::min());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/levels.hpp"
 #include "linear/dense_matrix.hpp"
 
 namespace tchat {
@@ -260,7 +261,7 @@ PeriodicQz::TriangularBlock PeriodicQz::triangular_block(int k) const {
 /// Do the eigenvalues of T's block at rows k-1, k (`t`) times that of A_1 (T A_1's own where the window ends there)
 /// differ so much that half of the digits of the smaller one are lost beside the larger?
 bool PeriodicQz::graded(const TriangularBlock& t, int k) const {
-  constexpr double share = 1e-7;
+  constexpr double share = level::double_zero;
   const double size = size1(a(0, k - 1, k - 1)) + size1(a(0, k - 1, k)) + size1(a(0, k, k - 1)) + size1(a(0, k, k));
   if (size < std::numeric_limits<double>::min()) return false;
   const double scale = 1.0 / size;  // squares of what is small may vanish

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "base/levels.hpp"
 #include "orbit/admissibility.hpp"
 
 namespace tchat {
@@ -29,16 +30,13 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// The rule of the column PT: |mu| <= 1 + 1e-5 is stable. Closer to the circle nothing is decided.
-constexpr double stability_margin = 1e-5;
-
 bool is_known(const FloquetMultipliers& multipliers) {
   return multipliers.determined() && multipliers.structural <= structural_bound;
 }
 
 double doubt_of_stability(const FloquetMultipliers& multipliers) {
   if (multipliers.are_eigenvalues) return orbit_accuracy * largest_modulus(multipliers.nontrivial());
-  return std::max(stability_margin, multiplier_accuracy(multipliers));
+  return std::max(level::on_circle, multiplier_accuracy(multipliers));
 }
 
 /// Those that tell of the orbit, the most unstable one first.
@@ -56,7 +54,7 @@ std::vector<Complex> by_excess(const FloquetMultipliers& multipliers) {
 Stability FloquetMultipliers::stability() const {
   if (!valid) return Stability::unknown;
   const double doubt = doubt_of_stability(*this);
-  const bool is_doubtful = !are_eigenvalues && doubt > stability_margin;
+  const bool is_doubtful = !are_eigenvalues && doubt > level::on_circle;
   const UnstableCount count = count_unstable(*this);
   if (surely_outside > 0 || (is_doubtful ? count.outside > 0 : !stable())) return Stability::unstable;
   return undetermined > 0 || (is_doubtful && count.undecided > 0) ? Stability::unknown : Stability::stable;
@@ -84,9 +82,8 @@ double multiplier_distance(const FloquetMultipliers& multipliers, double target)
 }
 
 int touching_segment(std::span<const double> transversalities) {
-  constexpr double tangent = 1e-4;
   for (std::size_t s = 0; s < transversalities.size(); ++s)
-    if (std::abs(transversalities[s]) < tangent) return static_cast<int>(s);
+    if (std::abs(transversalities[s]) < level::visible) return static_cast<int>(s);
   return -1;
 }
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/levels.hpp"
 #include "model/events.hpp"
 #include "orbit/admissibility.hpp"
 #include "orbit/condensed_system.hpp"
@@ -149,7 +150,7 @@ namespace {
 
 constexpr int most_steps = 30;
 /// Of |h_x| |f|: h falls towards an end of the segment, or is stationary there.
-constexpr double falls_to_end = 1e-6;
+constexpr double falls_to_end = level::located;
 
 }  // namespace
 
@@ -171,12 +172,12 @@ TorusContactFollower::TorusContactFollower(const TorusSystem& system, const Orbi
       by_phase_(shape.dimension),
       fx_(shape.dimension, shape.dimension),
       y_(static_cast<std::size_t>(shape.dimension)),
-      stepper_(boost::numeric::odeint::make_controlled<boost::numeric::odeint::runge_kutta_fehlberg78<State>>(1e-14,
-                                                                                                              1e-13)) {}
+      stepper_(boost::numeric::odeint::make_controlled<boost::numeric::odeint::runge_kutta_fehlberg78<State>>(
+          level::reference_flow.absolute, level::reference_flow.relative)) {}
 
 void TorusContactFollower::find_place(const Orbit& x, const CollocationRule& rule, double tau) {
   // Just before a mesh point it is that one which tells most: Newton's step on the time does the rest.
-  constexpr double just_before = 1e-6;
+  constexpr double just_before = level::located;
   const auto beyond = std::upper_bound(x.mesh.begin(), x.mesh.end() - 1, tau + just_before);
   interval_ = static_cast<int>(std::max<std::ptrdiff_t>(beyond - x.mesh.begin() - 1, 0));
   const double left = x.mesh[static_cast<std::size_t>(interval_)];
@@ -227,7 +228,7 @@ bool TorusContactFollower::find_least_time(const Orbit& x, const CollocationRule
     const double change = -rate / rate_slope / duration;
     tau += change;
     if (!(tau > 0.0 && tau < 1.0)) return false;
-    if (std::abs(change) < 1e-10) return true;
+    if (std::abs(change) < level::converged) return true;
   }
   return false;
 }
@@ -306,9 +307,9 @@ bool TorusContactFollower::follow(const Orbit& x, const CollocationRule& rule, T
   for (int step = 0; step < most_steps; ++step) {
     const double second = (slope - slope_before) / (phi - before);
     // Of phases close together the slopes differ by rounding.
-    if (!(second > 0.0)) return std::abs(change) < 1e-6 * reach;
+    if (!(second > 0.0)) return std::abs(change) < level::stalled * reach;
     change = std::clamp(-slope / second, -0.25 * reach, 0.25 * reach);
-    if (std::abs(change) < 1e-8 * reach) break;  // the value does not see it
+    if (std::abs(change) < level::differences * reach) break;  // the value does not see it
     before = phi;
     slope_before = slope;
     phi += change;
