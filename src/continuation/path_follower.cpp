@@ -397,14 +397,43 @@ double PathFollower::relative_residual(const Orbit& x) {
   return problem_.residual_size(newton_.residual()) / (1.0 + largest_state(x));
 }
 
+/// The largest relative change along the tangent.
+double PathFollower::relative_length(const PathPoint& point) const {
+  const Orbit& x = point.orbit;
+  const DefiningSystem& system = problem_.system();
+  const OrbitVector& t = point.tangent;
+  const double states = array_functions().range(t.states.data(), t.states.size()).largest / (1.0 + largest_state(x));
+  double largest = states;
+  const double time = time_size(system, x);
+  for (int s = 0; s < x.shape.segments; ++s)
+    largest = std::max(largest, std::abs(t.durations(s)) / (time + std::abs(x.duration(s))));
+  for (int g = 0; g < system.free_count(); ++g)
+    largest = std::max(largest, std::abs(t.globals(g)) / parameter_size(system, x, g));
+  return largest;
+}
+
+double PathFollower::principal_share(const PathPoint& point) const {
+  const double value = std::abs(point.orbit.par(principal_ - 1));
+  const double size = value > 0.0 ? value : problem_.system().system().parameter_size(principal_, value);
+  return std::abs(principal_direction(point)) / size / relative_length(point);
+}
+
 /// The first component of the tangent that is not negligible decides: the principal parameter's when it varies.
 void PathFollower::orient(PathPoint& point) const {
   constexpr double negligible = level::double_zero;
+  const Orbit& x = point.orbit;
+  const DefiningSystem& system = problem_.system();
+  const double length = relative_length(point);
   double direction = principal_direction(point);
-  for (Eigen::Index g = 0; std::abs(direction) < negligible && g < point.tangent.globals.size(); ++g)
+  bool decides = principal_share(point) >= negligible;
+  for (int g = 0; !decides && g < system.free_count(); ++g) {
     direction = point.tangent.globals(g);
-  for (Eigen::Index s = 0; std::abs(direction) < negligible && s < point.tangent.durations.size(); ++s)
+    decides = std::abs(direction) >= negligible * length * parameter_size(system, x, g);
+  }
+  for (int s = 0; !decides && s < x.shape.segments; ++s) {
     direction = point.tangent.durations(s);
+    decides = std::abs(direction) >= negligible * length * (time_size(system, x) + std::abs(x.duration(s)));
+  }
   if (direction < 0.0) reverse(point);
 }
 

@@ -161,6 +161,9 @@ class PathFollower {
   int principal() const { return principal_; }  ///< PAR index of the continuation parameter
   /// By how much the principal parameter grows along the tangent.
   double principal_direction(const PathPoint& point) const;
+  /// Which share of its value, or of its size where it is zero, it changes by, compared with what changes most along
+  /// the tangent.
+  double principal_share(const PathPoint& point) const;
   const MonitorSet& monitors() const { return monitors_; }
   const std::vector<HeldMonitor>& held() const { return problem_.held(); }
   /// Cosine of the angle between the point's tangent and a direction, in the weighted norm.
@@ -180,6 +183,7 @@ class PathFollower {
   CondensedSystem::Singularity singularity(const PathPoint& point);
 
  private:
+  double relative_length(const PathPoint& point) const;
   NewtonResult step_from_plane(const PathPoint& from, double ahead, PathPoint& to, double oldest);
   double ahead(const PathPoint& from, double ds, const Orbit& x) const;
   NewtonResult correct_and_orient(PathPoint& point, const OrbitVector& row, double change_along_row, double oldest);

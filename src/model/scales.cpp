@@ -124,7 +124,7 @@ bool are_usual(const Eigen::VectorXd& sizes) {
 
 double size_for_tolerance(double size) {
   constexpr double least = 1e-30;  // far above the smallest numbers, also times a tolerance
-  return size > 0.0 ? std::clamp(size, least, 1.0) : 1.0;
+  return size > 0.0 ? std::clamp(size, least, 1.0 / least) : 1.0;
 }
 
 Eigen::VectorXd sizes_from_ranges(const Eigen::VectorXd& ranges) {

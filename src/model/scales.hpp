@@ -70,7 +70,7 @@ double default_weight(double size);
 bool are_usual(const Eigen::VectorXd& sizes);
 
 /// What an absolute tolerance of integration, which is meant for states of size 1, is to be multiplied by for one of
-/// this size: not more than 1, nor nothing; 1 where the size is 0, not known.
+/// this size: it, but not nothing; 1 where the size is 0, not known.
 double size_for_tolerance(double size);
 
 /// Sizes of differences of states that range so far: one that hardly moves is compared on the scale of the others.

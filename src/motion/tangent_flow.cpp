@@ -7,6 +7,7 @@
 
 #include "base/levels.hpp"
 #include "model/events.hpp"
+#include "model/scales.hpp"
 
 namespace tchat {
 
@@ -36,7 +37,11 @@ void commutator(const MatrixXd& a, const MatrixXd& b, MatrixXd& out) {
 }  // namespace
 
 TangentFlow::TangentFlow(const HybridSystem& system, const Eigen::VectorXd& par)
-    : system_(system), par_(par), f_(system.dimension()) {
+    : system_(system),
+      par_(par),
+      f_(system.dimension()),
+      sizes_(Eigen::VectorXd::Zero(system.dimension())),
+      units_(Eigen::VectorXd::Ones(system.dimension())) {
   for (MatrixXd* const m : {&first_, &middle_, &last_, &a1_, &a2_, &a3_, &c1_, &c2_, &b_, &omega_})
     m->resize(system.dimension(), system.dimension());
 }
@@ -44,7 +49,23 @@ TangentFlow::TangentFlow(const HybridSystem& system, const Eigen::VectorXd& par)
 bool TangentFlow::evaluate(int field, const double* x, MatrixXd& out) {
   double no_parameters = 0.0;
   system_.first(FunctionKind::field, field, x, par_.data(), {}, f_.data(), out.data(), &no_parameters);
-  return all_finite(out.data(), static_cast<int>(out.size()));
+  if (!all_finite(out.data(), static_cast<int>(out.size()))) return false;
+  if (has_units_) out = units_.cwiseInverse().asDiagonal() * out * units_.asDiagonal();
+  return true;
+}
+
+void TangentFlow::choose_units(const double* x) {
+  sizes_ = sizes_.cwiseMax(Eigen::Map<const Eigen::VectorXd>(x, sizes_.size()).cwiseAbs());
+  has_units_ = !are_usual(sizes_);
+  if (has_units_) units_ = units_of(sizes_.unaryExpr(&size_for_tolerance));
+}
+
+void TangentFlow::to_units(MatrixXd& vectors) const {
+  if (has_units_) vectors = units_.cwiseInverse().asDiagonal() * vectors;
+}
+
+void TangentFlow::from_units(MatrixXd& vectors) const {
+  if (has_units_) vectors = units_.asDiagonal() * vectors;
 }
 
 bool TangentFlow::series(int field, const DenseOutput& state, double from, double step) {
@@ -99,6 +120,7 @@ bool TangentFlow::carry(MatrixXd& vectors, int field, const DenseOutput& state, 
   const double shortest = shortest_share * (to - from);
   double step = to - from;
   int steps = 0;
+  choose_units(state(from));
   for (double t = from; t < to;) {
     if (++steps > most_steps) return false;
     const bool is_last = t + step >= to - shortest;
@@ -108,7 +130,9 @@ bool TangentFlow::carry(MatrixXd& vectors, int field, const DenseOutput& state, 
       step *= 0.5;
       continue;
     }
+    to_units(vectors);
     apply_exponential(vectors);
+    from_units(vectors);
     stretched();
     t = is_last ? to : t + step;
     if (difference_ < 0.01 * most_difference && changes_ < 0.1 && norm_ < 0.5 * most_norm) step *= 2.0;

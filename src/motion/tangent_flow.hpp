@@ -24,8 +24,8 @@ namespace tchat {
 //
 // Exact, whatever the step, where A is constant. To fourth order the last term is -1/12 [a1, a2]; where the difference
 // of both is too large, or A changes too much for its quadrature, or |h A| is so large that columns would become
-// parallel, the step is halved. Allocates nothing
-// after construction.
+// parallel, the step is halved. All of that is judged in units of the sizes that states have had, where these are far
+// from 1. Allocates nothing after construction.
 
 class TangentFlow {
  public:
@@ -48,6 +48,9 @@ class TangentFlow {
   bool series(int field, const DenseOutput& state, double from, double step);
   bool evaluate(int field, const double* x, Eigen::MatrixXd& out);
   void apply_exponential(Eigen::MatrixXd& vectors);
+  void choose_units(const double* x);
+  void to_units(Eigen::MatrixXd& vectors) const;
+  void from_units(Eigen::MatrixXd& vectors) const;
 
   const HybridSystem& system_;
   const Eigen::VectorXd& par_;
@@ -58,6 +61,8 @@ class TangentFlow {
   Eigen::MatrixXd a1_, a2_, a3_, c1_, c2_, b_;  // as above
   Eigen::MatrixXd omega_, term_, product_;
   Eigen::VectorXd f_;
+  Eigen::VectorXd sizes_, units_;  // largest |x_i| so far; powers of two next to them
+  bool has_units_ = false;
 };
 
 // One turn of a simulation, from the state in which an event is met to that of a later one, with its derivative.

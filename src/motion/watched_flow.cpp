@@ -188,7 +188,8 @@ struct RungeKuttaFlow::Implementation {
   int field;
   VectorXd par;
   FlowOptions options;
-  DopriState start;
+  VectorXd units;    // powers of two next to the sizes of states, in which the stepper has them
+  DopriState start;  // the states of the problem
   DenseDormandPrince stepper;
   DormandPrince single;  // for the last step to an event
   std::optional<EventWatch> watch;
@@ -200,7 +201,7 @@ struct RungeKuttaFlow::Implementation {
   double looked = 0.0;  // up to here the watch has looked
   long steps = 0;
   int fallen = 0;
-  DopriState dense, single_state;
+  DopriState dense, scaled, single_state, at = start;
   const DenseOutput output = [this](double t) { return dense_output(t); };
   std::optional<VectorXd> at_fall;  // the state at `time`, by a step of the method
 
@@ -209,47 +210,48 @@ struct RungeKuttaFlow::Implementation {
         field(i),
         par(p),
         options(o),
+        units(are_usual(o.sizes) ? VectorXd(VectorXd::Ones(x0.size()))
+                                 : units_of(o.sizes.unaryExpr(&size_for_tolerance))),
         start(x0.begin(), x0.end()),
-        stepper(odeint::make_dense_output(absolute_tolerance(o), o.relative_tolerance, DormandPrince())),
+        stepper(odeint::make_dense_output(o.absolute_tolerance, o.relative_tolerance, DormandPrince())),
         dense(start),
+        scaled(start),
         single_state(start) {}
 
-  /// A share of the smallest state whose size is known, where that is small.
-  static double absolute_tolerance(const FlowOptions& options) {
-    if (are_usual(options.sizes)) return options.absolute_tolerance;
-    double least = 1.0;
-    for (const double size : options.sizes) least = std::min(least, size_for_tolerance(size));
-    return options.absolute_tolerance * least;
+  void multiply(const DopriState& x, DopriState& result) const {
+    for (std::size_t i = 0; i < x.size(); ++i) result[i] = units(static_cast<Eigen::Index>(i)) * x[i];
+  }
+  void divide(DopriState& x) const {
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] /= units(static_cast<Eigen::Index>(i));
   }
 
   auto right_hand_side() {
-    return [this](const DopriState& x, DopriState& dxdt, double) {
-      system.value(FunctionKind::field, field, x.data(), par.data(), dxdt.data());
-      if (all_finite(dxdt.data(), static_cast<int>(dxdt.size()))) return;
-      remember_trouble(FunctionKind::field, field, x);
-      std::fill(dxdt.begin(), dxdt.end(), no_value);
+    return [this](const DopriState& y, DopriState& dydt, double) {
+      multiply(y, at);
+      system.value(FunctionKind::field, field, at.data(), par.data(), dydt.data());
+      if (all_finite(dydt.data(), static_cast<int>(dydt.size()))) return divide(dydt);
+      remember_trouble(FunctionKind::field, field, y);
+      std::fill(dydt.begin(), dydt.end(), no_value);
     };
   }
 
   /// Ignores stages that were computed from the substitute value no_value.
-  void remember_trouble(FunctionKind kind, int index, const DopriState& x) {
+  void remember_trouble(FunctionKind kind, int index, const DopriState& y) {
     const bool is_reached =
-        std::all_of(x.begin(), x.end(), [](double value) { return std::abs(value) < no_value / 2; });
-    if (is_reached) not_evaluated = undefined_value(system, kind, index, x.data());
+        std::all_of(y.begin(), y.end(), [](double value) { return std::abs(value) < no_value / 2; });
+    if (is_reached) not_evaluated = undefined_value(system, kind, index, at.data());
   }
 
   /// The first step is tried with a length that moves x by one part in a hundred; the error control does the rest.
   double first_step() {
-    right_hand_side()(start, dense, 0.0);
-    const Eigen::Map<const VectorXd> x(start.data(), static_cast<Eigen::Index>(start.size()));
-    const Eigen::Map<const VectorXd> f(dense.data(), x.size());
+    right_hand_side()(scaled, dense, 0.0);
+    const Eigen::Map<const VectorXd> y(scaled.data(), static_cast<Eigen::Index>(scaled.size()));
+    const Eigen::Map<const VectorXd> f(dense.data(), y.size());
     if (are_usual(options.sizes)) {
       const double speed = f.norm();
-      return speed > 0.0 ? 0.01 * std::max(x.norm(), 1e-3) / speed : 0.01;
+      return speed > 0.0 ? 0.01 * std::max(y.norm(), 1e-3) / speed : 0.01;
     }
-    double fastest = 0.0;  // in sizes a unit of time
-    for (Eigen::Index i = 0; i < f.size(); ++i)
-      if (options.sizes(i) > 0.0) fastest = std::max(fastest, std::abs(f(i)) / options.sizes(i));
+    const double fastest = f.cwiseAbs().maxCoeff();  // in sizes a unit of time
     return fastest > 0.0 ? 0.01 / fastest : 0.01;
   }
 
@@ -257,7 +259,8 @@ struct RungeKuttaFlow::Implementation {
 
   const double* dense_output(double t) {
     if (steps == 0) return start.data();
-    stepper.calc_state(t, dense);
+    stepper.calc_state(t, scaled);
+    multiply(scaled, dense);
     return dense.data();
   }
 
@@ -269,7 +272,11 @@ struct RungeKuttaFlow::Implementation {
 
   /// "" or why the integrator cannot go on.
   std::string step() {
-    if (steps == 0) stepper.initialize(start, 0.0, first_step());
+    if (steps == 0) {
+      scaled = start;
+      divide(scaled);
+      stepper.initialize(scaled, 0.0, first_step());
+    }
     not_evaluated.clear();
     try {
       stepper.do_step(right_hand_side());
@@ -281,9 +288,9 @@ struct RungeKuttaFlow::Implementation {
     const double length = stepper.current_time() - stepper.previous_time();
     if (!(length > smallest_step * stepper.current_time()))
       return not_evaluated.empty() ? "the steps become too small" : not_evaluated;
-    const DopriState& x = stepper.current_state();
-    if (!all_finite(x.data(), static_cast<int>(x.size()))) return "the state is not finite";
-    return unevaluated_event(x);
+    multiply(stepper.current_state(), at);
+    if (!all_finite(at.data(), static_cast<int>(at.size()))) return "the state is not finite";
+    return unevaluated_event(at);
   }
 
   std::string unevaluated_event(const DopriState& x) {
@@ -320,8 +327,9 @@ struct RungeKuttaFlow::Implementation {
   /// x(t) by one step of the method from the last one's start.
   const double* step_to(double t) {
     single.reset();  // it takes the field at its last step's end for that at this one's start
-    single.do_step(right_hand_side(), stepper.previous_state(), stepper.previous_time(), single_state,
+    single.do_step(right_hand_side(), stepper.previous_state(), stepper.previous_time(), scaled,
                    t - stepper.previous_time());
+    multiply(scaled, single_state);
     return single_state.data();
   }
 

@@ -114,11 +114,14 @@ Bifurcation double_without_section(const DefiningSystem& defining, const PathPoi
 
 /// Turns the direction so that DS > 0 has a meaning: the first free parameter, else duration, else state at the start
 /// of the orbit, that changes along it grows.
-void orient(const HybridSystem& system, const Orbit& x, OrbitVector& v) {
-  constexpr double rounding = level::visible;  // of the largest one
-  std::vector<double> changes(v.globals.begin(), v.globals.end());
-  changes.insert(changes.end(), v.durations.begin(), v.durations.end());
-  for (int a = 0; a < x.shape.dimension; ++a) changes.push_back(system.unit_of(a + 1) * v.states(a, 0));
+void orient(const DefiningSystem& system, const Orbit& x, OrbitVector& v) {
+  constexpr double rounding = level::visible;  // of the largest one, relative to sizes
+  std::vector<double> changes;
+  for (int g = 0; g < system.free_count(); ++g) changes.push_back(v.globals(g) / parameter_size(system, x, g));
+  for (int s = 0; s < x.shape.segments; ++s)
+    changes.push_back(v.durations(s) / (time_size(system, x) + std::abs(x.duration(s))));
+  const double size = 1.0 + x.states.cwiseAbs().maxCoeff();
+  for (int a = 0; a < x.shape.dimension; ++a) changes.push_back(v.states(a, 0) / size);
   double largest = 0.0;
   for (const double c : changes) largest = std::max(largest, std::abs(c));
   const auto first =
@@ -165,7 +168,7 @@ Bifurcation branch_at(PathFollower& follower, const PathPoint& point) {
   CondensedSystem& condensed = follower.condensed();
   OrbitVector crossing = condensed.make_vector();
   if (condensed.system().find_crossing_branch(point.orbit, point.tangent, crossing)) {
-    orient(condensed.system().system(), point.orbit, crossing);
+    orient(condensed.system(), point.orbit, crossing);
     return {point.orbit, crossing, point.tangent};
   }
   OrbitResidual residual = condensed.make_residual();
@@ -186,15 +189,21 @@ Bifurcation branch_at(PathFollower& follower, const PathPoint& point) {
   v.states -= along * point.tangent.states;
   v.durations -= along * point.tangent.durations;
   v.globals -= along * point.tangent.globals;
-  orient(condensed.system().system(), point.orbit, v);
+  orient(condensed.system(), point.orbit, v);
   return {point.orbit, v, point.tangent};
 }
 
-/// The largest difference of states, durations and free parameters.
-double largest_difference(const Orbit& a, const Orbit& b, const std::vector<int>& free_parameters) {
-  double largest = (a.states - b.states).cwiseAbs().maxCoeff();
-  for (int s = 0; s < a.shape.segments; ++s) largest = std::max(largest, std::abs(a.duration(s) - b.duration(s)));
-  for (const int p : free_parameters) largest = std::max(largest, std::abs(a.par(p - 1) - b.par(p - 1)));
+/// The largest difference of states, durations and free parameters, relative to their sizes, as Newton's tolerances
+/// are.
+double largest_difference(const DefiningSystem& system, const Orbit& a, const Orbit& b) {
+  double largest = (a.states - b.states).cwiseAbs().maxCoeff() / (1.0 + b.states.cwiseAbs().maxCoeff());
+  const double time = time_size(system, b);
+  for (int s = 0; s < a.shape.segments; ++s)
+    largest = std::max(largest, std::abs(a.duration(s) - b.duration(s)) / (time + std::abs(b.duration(s))));
+  for (int g = 0; g < system.free_count(); ++g) {
+    const int p = system.free_parameters()[static_cast<std::size_t>(g)];
+    largest = std::max(largest, std::abs(a.par(p - 1) - b.par(p - 1)) / parameter_size(system, b, g));
+  }
   return largest;
 }
 
@@ -227,8 +236,9 @@ bool has_left(PathFollower& follower, const PathPoint& from, const OrbitVector& 
   const std::vector<int>& free = follower.condensed().system().free_parameters();
   Orbit displaced = from.orbit;
   advance(displaced, ds, from.tangent, free);
-  const double displacement = largest_difference(displaced, from.orbit, free);
-  if (left_behind * displacement < visible * tolerance * (1.0 + from.orbit.states.cwiseAbs().maxCoeff())) return false;
+  const DefiningSystem& system = follower.condensed().system();
+  const double displacement = largest_difference(system, displaced, from.orbit);
+  if (left_behind * displacement < visible * tolerance) return false;
   PathPoint start = from;
   start.tangent = known;
   follower.renormalise(start);
@@ -240,7 +250,7 @@ bool has_left(PathFollower& follower, const PathPoint& from, const OrbitVector& 
     expected = start.orbit;
     advance(*expected, along, start.tangent, free);
   }
-  return largest_difference(reached, *expected, free) > left_behind * displacement;
+  return largest_difference(system, reached, *expected) > left_behind * displacement;
 }
 
 /// Did a step of length ds end near its length from the bifurcation? From a direction that is none Newton's method
@@ -249,7 +259,8 @@ bool is_near(const PathFollower& follower, const PathPoint& from, double ds, con
   const std::vector<int>& free = follower.condensed().system().free_parameters();
   Orbit displaced = from.orbit;
   advance(displaced, ds, from.tangent, free);
-  return largest_difference(reached, from.orbit, free) <= too_far * largest_difference(displaced, from.orbit, free);
+  const DefiningSystem& system = follower.condensed().system();
+  return largest_difference(system, reached, from.orbit) <= too_far * largest_difference(system, displaced, from.orbit);
 }
 
 /// The longest step that converges, of at most so much; nothing when none does.

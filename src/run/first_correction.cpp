@@ -257,8 +257,7 @@ void settle_turning_point(PathFollower& follower, const HybridSystem& system, co
   const Eigen::Index k = follower.principal() - 1;
   const auto move = [&](const PathPoint& to) { return std::abs(to.orbit.par(k) - asked); };
   const bool is_far = has_moved_far(system, follower.principal(), asked, point.orbit.par(k));
-  const bool is_turning =
-      result.iterations > regular_iterations && std::abs(follower.principal_direction(point)) <= level::visible;
+  const bool is_turning = result.iterations > regular_iterations && follower.principal_share(point) <= level::visible;
   if (!result.converged() || !(is_far || is_turning)) return;
   PathPoint at = follower.make_point(selected.start.orbit);
   const NewtonResult there = follower.start_by_minimum_norm(at);

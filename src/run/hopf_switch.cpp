@@ -37,7 +37,7 @@ constexpr double on_axis = 1e-3;
 /// The share of its scale by which the event function of a section through the equilibrium may miss zero there.
 constexpr double on_section = level::same;
 /// An oscillation that moves across the section by a smaller share of what it moves lies in it.
-constexpr double in_section = level::located;
+constexpr double in_section = level::converged;
 
 /// The eigenvector of i omega.
 struct Oscillation {
@@ -139,7 +139,7 @@ void begin_on_section(const HybridSystem& system, int event, const Orbit& x, con
                     "equilibrium; {}",
                     selected.source, selected.label, name, at.h, cure));
   const Complex across = at.gradient.cast<Complex>().dot(v);
-  if (std::abs(across) < in_section * at.gradient.norm())
+  if (std::abs(across) < in_section * at.gradient.norm() * v.norm())
     throw UserError(fmt::format("{}: the oscillation that is born at label {} lies in the section of {}; {}",
                                 selected.source, selected.label, name, cure));
   v *= Complex(0.0, 1.0) * std::abs(across) / across;
