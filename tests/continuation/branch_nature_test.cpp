@@ -221,7 +221,7 @@ TEST_CASE("a period that grows with nothing at rest nearby tends to no homoclini
     return sampled_orbit({{2 * pi / rate, circle}}, 2, 20, 4, parameters({rate}));
   };
   OrbitTrend trend;
-  for (const double rate : {5e-7, 4e-7, 2e-7}) trend.add(orbit(rate), rate);
+  for (const double rate : {5e-7, 4e-7, 2e-7}) trend.add(orbit(rate), rate, 1.0);
   const auto growth = trend.period_growth();
   REQUIRE(growth);
   CHECK(growth->from == Approx(2 * pi / 5e-7));
@@ -233,7 +233,7 @@ TEST_CASE("a negative period does not grow") {
   const auto still = [](double) { return Eigen::Vector2d(1.0, 0.0); };
   OrbitTrend trend;
   for (const double period : {-6.227, -6.227, -3.0}) {
-    trend.add(sampled_orbit({{period, still}}, 2, 5, 4, parameters({0.3})), 0.3);
+    trend.add(sampled_orbit({{period, still}}, 2, 5, 4, parameters({0.3})), 0.3, 1.0);
     CHECK_FALSE(trend.period_growth());
   }
 }
