@@ -152,7 +152,7 @@ int FloquetMultipliers::stable_count() const {
   double largest = 0.0;
   for (const auto& mu : list) largest = std::max(largest, std::abs(mu));
   const auto stable = std::count_if(list.begin(), list.end(), [&](const auto& mu) {
-    return are_eigenvalues ? mu.real() <= level::rounding * largest : std::abs(mu) <= 1.0 + level::on_circle;
+    return are_eigenvalues ? mu.real() <= level::negligible * largest : std::abs(mu) <= 1.0 + level::on_circle;
   });
   return static_cast<int>(stable + static_cast<std::ptrdiff_t>(values.size() - list.size()));
 }
