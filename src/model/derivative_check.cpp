@@ -91,10 +91,10 @@ std::string to_text(const BoundaryCheck& check) {
 
 namespace {
 
-constexpr double consistency_factor = level::converged;  // between two exact evaluations
-constexpr int guard = 16;                                // entries of room behind arguments and outputs
-constexpr double untouched = -7.25e77;                   // what the room behind the outputs holds
-constexpr int most_faults = 10;                          // wrong entries of one function that are listed
+constexpr double consistency_factor = level::negligible;  // between two exact evaluations
+constexpr int guard = 16;                                 // entries of room behind arguments and outputs
+constexpr double untouched = -7.25e77;                    // what the room behind the outputs holds
+constexpr int most_faults = 10;                           // wrong entries of one function that are listed
 constexpr int most_parameters_of_second = 60;  // of more a random choice: every one costs as many evaluations again
 constexpr int many_variables = 16;             // from here on random directions instead of every variable
 

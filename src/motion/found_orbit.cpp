@@ -22,7 +22,7 @@ using Eigen::VectorXd;
 
 constexpr double waits = 10.0;                   // for the event of a segment, as a multiple of the simulated turn
 constexpr double same_orbit = 0.1;               // largest correction, as a share of the orbit's range
-constexpr double together = level::rounding;      // events so far apart, as a share of the period
+constexpr double together = level::rounding;     // events so far apart, as a share of the period
 constexpr double same_state = level::tolerance;  // of points of the refined orbit, likewise
 
 bool ends_in_section(const HybridSystem& system, const std::vector<SimulatedSegment>& turn, std::size_t s) {
@@ -190,7 +190,7 @@ FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, co
   for (const SimulatedSegment& segment : turn) {
     found.signature.push_back(segment.index);
     found.modes.push_back(segment.mode);
-    found.instants.push_back(segment.duration <= together * period);
+    found.instants.push_back(period > 0.0 && segment.duration <= together * period);
   }
   const VectorXd range = ranges(turn, result.ignorable, found.sizes);
   PeriodicOrbit orbit = shoot_finely(system, found, turn.front().start, par, result.ignorable);

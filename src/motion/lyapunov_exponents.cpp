@@ -12,6 +12,7 @@
 #include "base/messages.hpp"
 #include "model/events.hpp"
 #include "model/function_values.hpp"
+#include "model/scales.hpp"
 #include "motion/cvodes_flow.hpp"
 #include "motion/simulation_run.hpp"
 #include "motion/tangent_flow.hpp"
@@ -93,6 +94,7 @@ struct LyapunovAccumulator::Implementation {
   VectorXd growth_of_event, growth_of_tick;  // since the last event (with a section: return), since the last tick
   double duration_of_event = 0.0;
 
+  VectorXd sizes;                // of the states so far; none: it has not begun
   std::vector<Index> ignorable;  // states that nothing depends on
   bool has_flow = false;         // the direction along the flow is among the known ones
   Index known = -1;              // first columns of the frame, whose directions are known; -1: it has not begun
@@ -185,6 +187,10 @@ struct LyapunovAccumulator::Implementation {
 
   void begin_segment(int field, const double* start) {
     if (known < 0) set_up(field, start);
+    if (sizes.size() == 0) {
+      sizes = sizes_at(system, field, Eigen::Map<const VectorXd>(start, system.dimension()), par);
+      tangent.use_sizes(sizes);
+    }
     is_in_segment = true;
     carried = 0.0;
     if (waiting) apply_saltation(field);
@@ -323,6 +329,8 @@ struct LyapunovAccumulator::Implementation {
     if (!is_in_segment) begin_segment(segment.mode.field(), segment.start.data());
     if (carried == 0.0 && segment.duration > 0.0) integrate(segment);
     is_in_segment = false;
+    sizes = sizes.cwiseMax(segment.low.cwiseAbs()).cwiseMax(segment.high.cwiseAbs());
+    tangent.use_sizes(sizes);
     time += segment.duration;
     duration_of_event += segment.duration;
     if (segment.ended_by == SegmentEnd::event) end_by_event(segment);

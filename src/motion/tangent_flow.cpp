@@ -37,11 +37,7 @@ void commutator(const MatrixXd& a, const MatrixXd& b, MatrixXd& out) {
 }  // namespace
 
 TangentFlow::TangentFlow(const HybridSystem& system, const Eigen::VectorXd& par)
-    : system_(system),
-      par_(par),
-      f_(system.dimension()),
-      sizes_(Eigen::VectorXd::Zero(system.dimension())),
-      units_(Eigen::VectorXd::Ones(system.dimension())) {
+    : system_(system), par_(par), f_(system.dimension()), units_(Eigen::VectorXd::Ones(system.dimension())) {
   for (MatrixXd* const m : {&first_, &middle_, &last_, &a1_, &a2_, &a3_, &c1_, &c2_, &b_, &omega_})
     m->resize(system.dimension(), system.dimension());
 }
@@ -54,10 +50,9 @@ bool TangentFlow::evaluate(int field, const double* x, MatrixXd& out) {
   return true;
 }
 
-void TangentFlow::choose_units(const double* x) {
-  sizes_ = sizes_.cwiseMax(Eigen::Map<const Eigen::VectorXd>(x, sizes_.size()).cwiseAbs());
-  has_units_ = !are_usual(sizes_);
-  if (has_units_) units_ = units_of(sizes_.unaryExpr(&size_for_tolerance));
+void TangentFlow::use_sizes(const Eigen::VectorXd& sizes) {
+  has_units_ = !are_usual(sizes);
+  if (has_units_) units_ = units_of(sizes.unaryExpr(&size_for_tolerance));
 }
 
 void TangentFlow::to_units(MatrixXd& vectors) const {
@@ -120,7 +115,6 @@ bool TangentFlow::carry(MatrixXd& vectors, int field, const DenseOutput& state, 
   const double shortest = shortest_share * (to - from);
   double step = to - from;
   int steps = 0;
-  choose_units(state(from));
   for (double t = from; t < to;) {
     if (++steps > most_steps) return false;
     const bool is_last = t + step >= to - shortest;
@@ -165,6 +159,7 @@ SimulatedTurn simulate_turn(const HybridSimulation& at, const VectorXd& y, const
   SimulatedTurn turn;
   MatrixXd& v = turn.derivative;
   settings.on_piece = {};
+  tangent.use_sizes(at.sizes());
   if (with_derivative) {
     v = jump_at(system, at.last_event().jump, y.data(), par.data()).derivative;
     settings.on_piece = [&](int field, const DenseOutput& state, double from, double to) {
@@ -180,6 +175,7 @@ SimulatedTurn simulate_turn(const HybridSimulation& at, const VectorXd& y, const
       return turn;
     }
     if (!with_derivative) continue;
+    tangent.use_sizes(simulation.sizes());
     turn.is_smooth = turn.is_smooth && project_on_event(system, segment, par, v);
     if (!turn.is_smooth) {
       turn.fault = fmt::format("segment {} has no finite derivative", s + 1);

@@ -24,8 +24,8 @@ namespace tchat {
 //
 // Exact, whatever the step, where A is constant. To fourth order the last term is -1/12 [a1, a2]; where the difference
 // of both is too large, or A changes too much for its quadrature, or |h A| is so large that columns would become
-// parallel, the step is halved. All of that is judged in units of the sizes that states have had, where these are far
-// from 1. Allocates nothing after construction.
+// parallel, the step is halved. All of that is judged in units of the sizes of states, where these are far from 1.
+// Allocates nothing after construction.
 
 class TangentFlow {
  public:
@@ -38,6 +38,8 @@ class TangentFlow {
   bool carry(OrthonormalFrame& frame, int field, const DenseOutput& state, double from, double to);
   /// V -> Phi V for n x K vectors, Phi the Jacobian of the flow from one time to the next. False as above.
   bool carry(Eigen::MatrixXd& vectors, int field, const DenseOutput& state, double from, double to);
+  /// Sizes of the states, n, as in model/scales.hpp; before the first call they count as 1.
+  void use_sizes(const Eigen::VectorXd& sizes);
   /// The frame has been made orthonormal by others.
   void restart() { stretched_ = 0.0; }
 
@@ -48,7 +50,6 @@ class TangentFlow {
   bool series(int field, const DenseOutput& state, double from, double step);
   bool evaluate(int field, const double* x, Eigen::MatrixXd& out);
   void apply_exponential(Eigen::MatrixXd& vectors);
-  void choose_units(const double* x);
   void to_units(Eigen::MatrixXd& vectors) const;
   void from_units(Eigen::MatrixXd& vectors) const;
 
@@ -61,7 +62,7 @@ class TangentFlow {
   Eigen::MatrixXd a1_, a2_, a3_, c1_, c2_, b_;  // as above
   Eigen::MatrixXd omega_, term_, product_;
   Eigen::VectorXd f_;
-  Eigen::VectorXd sizes_, units_;  // largest |x_i| so far; powers of two next to them
+  Eigen::VectorXd units_;  // powers of two next to the sizes
   bool has_units_ = false;
 };
 

@@ -355,35 +355,43 @@ std::optional<NearbyEquilibrium> find_equilibrium(const HybridSystem& system, in
 }
 
 std::optional<NearbyFold> find_fold(const HybridSystem& system, int field, const Eigen::VectorXd& near,
-                                    Eigen::VectorXd par, int active) {
+                                    Eigen::VectorXd par, int active, const Eigen::VectorXd& sizes) {
   constexpr int most_steps = 30;
-  constexpr double converged = level::differences;  // shares of sizes of the unknowns; the double zero of f leaves half of the digits
+  constexpr double converged = level::differences;  // f's double zero leaves half of the digits
   const Eigen::Index n = near.size();
   const int parameters[] = {active};
-  Eigen::VectorXd x = near, f(n), fv(n);
+  Eigen::VectorXd x = near, f(n), fv(n), fp(n), fvp(n), rows, of_parameter;
   Eigen::MatrixXd fx(n, n), fvx(n, n);
-  Eigen::VectorXd fp(n), fvp(n);
   for (int step = 0; step < most_steps; ++step) {
     system.first(FunctionKind::field, field, x.data(), par.data(), parameters, f.data(), fx.data(), fp.data());
     if (!f.allFinite() || !fx.allFinite()) return std::nullopt;
-    const SingularVectors least = singular_vectors(fx);
-    const Eigen::VectorXd v = least.right.col(n - 1), w = least.left.col(n - 1);
+    if (step == 0) {
+      rows = (fx.cwiseAbs() * sizes).cwiseMax(f.cwiseAbs()).cwiseInverse();
+      if (!rows.allFinite()) return std::nullopt;
+      of_parameter = rows.asDiagonal() * fp.cwiseAbs();
+    }
+    const Eigen::MatrixXd scaled = rows.asDiagonal() * fx * sizes.asDiagonal();
+    const SingularVectors least = singular_vectors(scaled);
+    const Eigen::VectorXd v = sizes.asDiagonal() * least.right.col(n - 1);
+    const Eigen::VectorXd w = rows.asDiagonal() * least.left.col(n - 1);
     Eigen::VectorXd direction = Eigen::VectorXd::Zero(n + 1);
     direction.head(n) = v;
     system.second(FunctionKind::field, field, x.data(), par.data(), parameters, direction.data(), fv.data(), fvx.data(),
                   fvp.data());
     Eigen::MatrixXd matrix(n + 1, n + 1);
-    matrix << fx, fp, w.transpose() * fvx, w.dot(fvp);
+    matrix << scaled, rows.asDiagonal() * fp, w.transpose() * fvx * sizes.asDiagonal(), w.dot(fvp);
     Eigen::VectorXd value(n + 1);
-    value << f, w.dot(fx * v);
+    value << rows.asDiagonal() * f, w.dot(fx * v);
     const Eigen::VectorXd change = solve(matrix, -value);
     if (!change.allFinite()) return std::nullopt;
-    x += change.head(n);
+    x += sizes.asDiagonal() * change.head(n);
     double& p = par(active - 1);
     p += change(n);
-    const bool stays =
-        change.head(n).norm() <= converged * (1.0 + x.norm()) && (fp * change(n)).norm() <= converged * fx.norm() * (1.0 + x.norm());
-    if (stays) return NearbyFold{x, p, fx};
+    const bool stays = change.head(n).norm() <= converged && (of_parameter * change(n)).norm() <= converged;
+    if (!stays) continue;
+    // Where w^T f_p = 0 the equilibria do not end: f as a whole may have become zero.
+    const double least_share = level::visible * least.left.col(n - 1).cwiseAbs().dot(of_parameter);
+    return std::abs(w.dot(fp)) > least_share ? std::optional(NearbyFold{x, p, fx}) : std::nullopt;
   }
   return std::nullopt;
 }

@@ -181,8 +181,9 @@ struct NearbyFold {
 };
 
 /// By Newton's method for n + 1 unknowns x and p: f = 0 (n) and the least singular value w^T f_x v = 0 (1), whose
-/// derivatives are w^T (d f_x) v. Nothing where that does not converge.
+/// derivatives are w^T (d f_x) v, states and f in units of `sizes` (n) and of the terms of f_x there. Nothing where
+/// that does not converge, or where w^T f_p = 0.
 std::optional<NearbyFold> find_fold(const HybridSystem& system, int field, const Eigen::VectorXd& near,
-                                    Eigen::VectorXd par, int active);
+                                    Eigen::VectorXd par, int active, const Eigen::VectorXd& sizes);
 
 }  // namespace tchat

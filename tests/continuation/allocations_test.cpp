@@ -241,7 +241,7 @@ TEST_CASE("no allocation from the hundredth point of a branch on, files, tests a
   for (std::vector<int>& events : of_branch.monitored) events = {1};
   TestList tests = contact_tests(orbits.system, settings);
   add_bifurcations(tests, orbits.system, settings);
-  REQUIRE(tests.size() == static_cast<std::size_t>(5 + copies));
+  REQUIRE(tests.size() == static_cast<std::size_t>(7 + 2 * copies));
   CountingSink sink(writer, from, to - 1);
   ContinuationRun run(orbits.follower, orbits.system, of_branch, std::move(tests), sink);
   const BranchSummary summary = run.run(orbits.corrected(start));
