@@ -132,6 +132,7 @@ BranchCurve curve_of(const EquilibriumSystem& system, std::unique_ptr<Condition>
   return {std::move(condition), [&system, &kept, codimension_two](const RunSettings& settings) {
             TestList tests = boundary_equilibrium_tests(system, settings);
             for (auto& test : codimension_two(kept)) tests.push_back(std::move(test));
+            add_turning_points(tests, system, settings);
             add_user_values(tests, system.system(), settings);
             return tests;
           }};
@@ -179,6 +180,7 @@ BranchCurve boundary(const EquilibriumSystem& system, const RunSettings& run, co
           [&system, event](const RunSettings& settings) {
             TestList tests = boundary_equilibrium_tests(system, settings, event);
             add_boundary_bifurcations(tests, system, settings);
+            add_turning_points(tests, system, settings);
             add_user_values(tests, system.system(), settings);
             return tests;
           }};

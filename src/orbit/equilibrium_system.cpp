@@ -362,6 +362,7 @@ std::optional<NearbyFold> find_fold(const HybridSystem& system, int field, const
   const int parameters[] = {active};
   Eigen::VectorXd x = near, f(n), fv(n), fp(n), fvp(n), rows, of_parameter;
   Eigen::MatrixXd fx(n, n), fvx(n, n);
+  double curvature = 0.0;  // at the start
   for (int step = 0; step < most_steps; ++step) {
     system.first(FunctionKind::field, field, x.data(), par.data(), parameters, f.data(), fx.data(), fp.data());
     if (!f.allFinite() || !fx.allFinite()) return std::nullopt;
@@ -378,6 +379,7 @@ std::optional<NearbyFold> find_fold(const HybridSystem& system, int field, const
     direction.head(n) = v;
     system.second(FunctionKind::field, field, x.data(), par.data(), parameters, direction.data(), fv.data(), fvx.data(),
                   fvp.data());
+    if (step == 0) curvature = std::abs(w.dot(fvx * v));
     Eigen::MatrixXd matrix(n + 1, n + 1);
     matrix << scaled, rows.asDiagonal() * fp, w.transpose() * fvx * sizes.asDiagonal(), w.dot(fvp);
     Eigen::VectorXd value(n + 1);
@@ -389,9 +391,10 @@ std::optional<NearbyFold> find_fold(const HybridSystem& system, int field, const
     p += change(n);
     const bool stays = change.head(n).norm() <= converged && (of_parameter * change(n)).norm() <= converged;
     if (!stays) continue;
-    // Where w^T f_p = 0 the equilibria do not end: f as a whole may have become zero.
+    // Where w^T f_p = 0 the equilibria do not end; where the curvature is lost, f as a whole has become zero.
     const double least_share = level::visible * least.left.col(n - 1).cwiseAbs().dot(of_parameter);
-    return std::abs(w.dot(fp)) > least_share ? std::optional(NearbyFold{x, p, fx}) : std::nullopt;
+    const bool is_fold = std::abs(w.dot(fp)) > least_share && std::abs(w.dot(fvx * v)) > level::visible * curvature;
+    return is_fold ? std::optional(NearbyFold{x, p, fx}) : std::nullopt;
   }
   return std::nullopt;
 }

@@ -182,7 +182,7 @@ struct NearbyFold {
 
 /// By Newton's method for n + 1 unknowns x and p: f = 0 (n) and the least singular value w^T f_x v = 0 (1), whose
 /// derivatives are w^T (d f_x) v, states and f in units of `sizes` (n) and of the terms of f_x there. Nothing where
-/// that does not converge, or where w^T f_p = 0.
+/// that does not converge, or where w^T f_p = 0 or w^T f_xx v v has been lost on the way.
 std::optional<NearbyFold> find_fold(const HybridSystem& system, int field, const Eigen::VectorXd& near,
                                     Eigen::VectorXd par, int active, const Eigen::VectorXd& sizes);
 

@@ -34,8 +34,8 @@ constexpr double roundings_of_a_node = 4.0;
 /// of the largest.
 constexpr double least_share = 1e-3;
 
-/// Of the mean density of intervals, where nothing happens.
-constexpr double least_density = 1e-3;
+/// Density of intervals where nothing happens, as a share of the largest; what takes so many of the intervals at most.
+constexpr double least_density = 1e-3, most_idle = 0.5;
 
 double power(double base, int exponent) {
   double result = base;
@@ -159,8 +159,8 @@ void MeshEquidistribution::Monitor::add_segment(const OrbitShape& shape, const E
   }
 }
 
-/// Two sweeps keep neighbouring intervals comparable. A floor keeps every interval finite: a share of the mean, so that
-/// it takes few of the intervals, however sharp the orbit is.
+/// Two sweeps keep neighbouring intervals comparable. A floor keeps every interval finite, and takes few of the
+/// intervals, however sharp the orbit is.
 void MeshEquidistribution::Monitor::smooth(std::span<const double> mesh) {
   for (int sweep = 0; sweep < 2; ++sweep) {
     smoothed = values;
@@ -170,7 +170,8 @@ void MeshEquidistribution::Monitor::smooth(std::span<const double> mesh) {
   }
   double mean = 0.0;
   for (int j = 0; j < values.size(); ++j) mean += values(j) * length(mesh, j);
-  for (double& value : values) value = std::max(value, least_density * mean);
+  const double least = std::min(least_density * values.maxCoeff(), most_idle * mean);
+  for (double& value : values) value = std::max(value, least);
 }
 
 /// That of segment `pattern`, or of all on their mesh in common. False where no derivative is known.

@@ -89,6 +89,7 @@ BranchCurve curve_of(const DefiningSystem& system, std::unique_ptr<Condition> co
   return {std::move(condition), [&system, &kept, add_special_points](const RunSettings& settings) {
             TestList tests = contact_tests(system, settings);
             add_special_points(tests, kept);
+            add_turning_points(tests, system, settings);
             add_user_values(tests, system.system(), settings);
             return tests;
           }};

@@ -15,6 +15,7 @@
 #include "settings/problem_type.hpp"
 #include "settings/settings_type.hpp"
 #include "stability/bifurcation_tests.hpp"
+#include "stability/curve_tests.hpp"
 #include "stability/equilibrium_tests.hpp"
 #include "stability/grazing_tests.hpp"
 #include "stability/test_function.hpp"
@@ -84,6 +85,15 @@ void add_user_values(TestList& tests, const HybridSystem& system, const RunSetti
     if (!is_fixed(settings, u.parameter))
       tests.push_back(
           std::make_unique<UserValueTest>(u.parameter, u.value, u.stop, parameter_name(system, settings, u.parameter)));
+}
+
+void add_turning_points(TestList& tests, const DefiningSystem& system, const RunSettings& settings) {
+  const std::vector<int> free = free_problem_parameters(settings);
+  const int principal = settings.free_parameters.front();
+  const auto at = std::find(free.begin(), free.end(), principal);
+  if (settings.detect_folds == 0 || free.size() < 2 || at == free.end()) return;
+  tests.push_back(
+      turning_test(at - free.begin(), parameter_name(system.system(), settings, principal), settings.detect_folds < 0));
 }
 
 void add_bifurcations(TestList& tests, const DefiningSystem& system, const RunSettings& settings) {

@@ -56,7 +56,8 @@ constexpr auto table = std::to_array<PointTypeFacts>({
      "grazing-fold or grazing-flip: the orbit without the contact has the multiplier +1 or -1; or a* = 0",
      PointSymbol::diamond, false, true, false, false},
     {"EX", -4, UserPointKind::extremum,
-     "extremum: ICP(1), a monitor, is stationary along the branch, with ISW = 2, 3, ... in one parameter more",
+     "extremum of ICP(1): of a monitor along the branch, with ISW = 2, 3, ... in one parameter more; of a "
+     "parameter along a curve",
      PointSymbol::reversed_triangle, false, true, false, false},
     {"CP", -2, UserPointKind::none, "cusp on a curve of folds", PointSymbol::square, false, true, false, false},
     {"BT", -1, UserPointKind::none, "Bogdanov-Takens point on a curve of equilibria: a double eigenvalue 0",

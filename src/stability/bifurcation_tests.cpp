@@ -176,7 +176,10 @@ TestValue MultiplierPairTest::evaluate(const TestedPoint& point) const {
       }
     last = next;
   }
-  return order < 2 ? TestValue::undefined() : TestValue::of(sign * value, multiplier_accuracy(point.multipliers));
+  // Pairs that are complex have not gone through it.
+  if (order < 2) value = multiplier_distance(point.multipliers, target_);
+  if (!std::isfinite(value)) return TestValue::undefined();
+  return TestValue::of(sign * value, multiplier_accuracy(point.multipliers));
 }
 
 bool MultiplierPairTest::is_genuine(const TestedPoint& point) const {

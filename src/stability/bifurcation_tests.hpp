@@ -82,7 +82,7 @@ class PeriodDoublingTest final : public TestFunction {
 /// BP or PD where two multipliers go through +1 or -1 together, as a symmetry makes them do: then no determinant
 /// changes sign. With the real multipliers of the target's sign in order of size, x_1 >= x_2 >= ..., x_k = |mu_k| - 1:
 /// the least |x_2i|, negative when an odd number of the x_2i are positive. It vanishes with one multiplier, too, which
-/// is no such point. Undefined with fewer than two such multipliers.
+/// is no such point. With fewer than two such multipliers: the least distance of any from the target.
 class MultiplierPairTest final : public TestFunction {
  public:
   MultiplierPairTest(int target, bool stop) : target_(target), stop_(stop) {}

@@ -187,7 +187,35 @@ class ExtremumTest final : public TestFunction {
   std::string names_;
 };
 
+class TurningTest final : public TestFunction {
+ public:
+  TurningTest(Eigen::Index principal, std::string what, bool stop)
+      : principal_(principal), what_(std::move(what)), stop_(stop) {}
+  std::string name() const override { return "extremum"; }
+  TestValue evaluate(const TestedPoint& point) const override {
+    return TestValue::of(point.tangent.globals(principal_), level::converged);
+  }
+  std::string reason_to_vanish(const TestedPoint&) const override { return "ICP(1) stays the same along the curve"; }
+  /// At a cusp no parameter moves, and where a section becomes tangent only the cut turns.
+  bool is_genuine(const TestedPoint& point) const override {
+    const bool moves = (point.tangent.globals.array().abs() > level::same).any();
+    return moves && touching_segment(point) < 0;
+  }
+  SpecialPoint classify(const TestedPoint&, bool) const override {
+    return {PointType::user, {UserPointKind::extremum}, stop_, what_};
+  }
+
+ private:
+  Eigen::Index principal_;
+  std::string what_;
+  bool stop_;
+};
+
 }  // namespace
+
+std::unique_ptr<TestFunction> turning_test(Eigen::Index principal, const std::string& name, bool stop) {
+  return std::make_unique<TurningTest>(principal, "extremum of " + name + " along the curve", stop);
+}
 
 std::unique_ptr<TestFunction> cusp_test(const CriticalMultiplier& fold) { return std::make_unique<CuspTest>(fold); }
 

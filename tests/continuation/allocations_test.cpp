@@ -247,7 +247,8 @@ TEST_CASE("no allocation from the hundredth point of a branch on, files, tests a
   const BranchSummary summary = run.run(orbits.corrected(start));
   REQUIRE(summary.points == to);
   CHECK(sink.labels() == 0);
-  CHECK(ours == copies * (to - 1 - from));  // the problem's own answers, what follows the end of each segment
+  // The problem's own answers, what follows the end of each segment: for the rule of its event, and for admissibility.
+  CHECK(ours == 2 * copies * (to - 1 - from));
   CHECK(solver == 0);
 }
 

@@ -299,6 +299,51 @@ z' = -z + 0.3*x^2 + b1
   CHECK(value_of(back, "LP", "b1") == Approx(-0.0625).epsilon(1e-8));
 }
 
+TEST_CASE("where the first parameter turns along a curve of folds or doublings there is a label") {
+  const Workspace workspace;
+  // In polar coordinates r' = -r ((r - 2)^2 - (p - q^2)): folds at p = q^2.
+  workspace.write("turning.tch", R"(par p=0.25, q=0.3
+init x=2.4, y=0
+r = sqrt(x^2 + y^2)
+g = (r - 2)^2 - (p - q^2)
+x' = -x*g - y
+y' = -y*g + x
+)");
+  workspace.succeed("simulate turning --free p --dat s -q");
+  workspace.succeed("run turning -c s -d s -o orbits DS=-0.02 DSMAX=.05 RL0=-.1 NMX=60 STOP=LP1");
+  for (const char* const step : {"DS=-0.02", "DS=0.02"}) {
+    const std::string out =
+        workspace
+            .succeed(Words{"run", "turning", "-c", "r.orbits", "-s", "orbits", "-o", "folds", "IRS=LP1", "ISW=2",
+                           "ICP=[p,q]", "DSMAX=.1", "RL0=-1", "RL1=1", "NMX=40", step, "UZR={q: -0.5}"})
+            .out;
+    INFO(out);
+    if (!contains(out, "q = -0.5")) continue;
+    CHECK(count_of(out, "\n  EX label ") == 1);
+    CHECK(contains(out, "extremum of p along the curve"));
+    CHECK(std::abs(value_of(out, "EX", "p")) < 1e-10);
+    CHECK(std::abs(value_of(out, "EX", "q")) < 1e-7);
+  }
+  // The logistic map's doubling at a = 3, where a = 2.8 + p - q^2: p = 0.2 + q^2.
+  workspace.write("doubling.tch", R"(par p=0.8, q=0.5
+init tau=0, x=0.5
+a = 2.8 + p - q^2
+x' = 0
+tau' = 1
+event turn = 1 - tau
+jump map: x -> a*x*(1 - x), tau -> 0
+after any: turn -> map
+)");
+  workspace.succeed("simulate doubling PAR(p)=0.3 --free p --dat d -q");
+  workspace.succeed("run doubling -c d -d d -o fixed DS=0.02 RL1=1");
+  const std::string out = workspace
+                              .succeed(Words{"run", "doubling", "-c", "r.fixed", "-s", "fixed", "-o", "curve",
+                                             "IRS=PD1", "ISW=2", "ICP=[p,q]", "RL0=-1", "RL1=1", "NMX=60", "DS=-0.02"})
+                              .out;
+  INFO(out);
+  CHECK(std::abs(value_of(out, "EX", "p") - 0.2) < 1e-9);
+}
+
 TEST_CASE("where the rules of the model have another impact a branch ends, and goes on inadmissible if it must") {
   // A relief valve that stays closed once it hits its seat slowly: |y2| < eps.
   const Workspace workspace;

@@ -45,7 +45,7 @@ TEST_CASE("A spike cut at 0 mV, where V rises by 2e10 mV/ms: simulated, continue
   CHECK(workspace.succeed("verify q.b").out.find("2 labels agree") != std::string::npos);
   // From its file, too.
   workspace.succeed("run adex -c s -s b IRS=EP2 -o further NMX=3 -q");
-  CHECK(workspace.succeed("verify q.further").out.find("1 labels agree") != std::string::npos);
+  CHECK(workspace.succeed("verify q.further").out.find("1 label agrees") != std::string::npos);
 }
 
 TEST_CASE("A spike for which times have too few digits is not written: an event that divides it cures that") {
@@ -54,8 +54,8 @@ TEST_CASE("A spike for which times have too few digits is not written: an event 
   const auto refused = workspace.tchat("simulate adex PAR(Vpeak)=20 --dat s -q");
   CHECK(refused.status == 1);
   CHECK(refused.err.find("divide it by an event that changes nothing, as at V = -28") != std::string::npos);
-  workspace.write("cut.tch",
-                  neuron("event cut = -28 - V\nafter start, spike: cut -> identity\nafter cut: spike -> reset\n"));
+  workspace.write("cut.tch", neuron("event cut = -28 - V\nafter start: cut -> identity\nafter spike: cut -> identity\n"
+                                    "after cut: spike -> reset\n"));
   workspace.succeed("simulate cut PAR(Vpeak)=20 --dat c -q");
   workspace.succeed("run cut -c c -d c -o c ICP=[I] DS=1 DSMAX=5 NMX=5 -q");
   CHECK(workspace.succeed("verify q.c").out.find("2 labels agree") != std::string::npos);
