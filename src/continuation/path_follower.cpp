@@ -412,6 +412,11 @@ double PathFollower::relative_length(const PathPoint& point) const {
   return largest;
 }
 
+double PathFollower::principal_rate_size(const PathPoint& point) const {
+  const double value = point.orbit.par(principal_ - 1);
+  return relative_length(point) * problem_.system().system().parameter_size(principal_, value);
+}
+
 double PathFollower::principal_share(const PathPoint& point) const {
   const double value = std::abs(point.orbit.par(principal_ - 1));
   const double size = value > 0.0 ? value : problem_.system().system().parameter_size(principal_, value);

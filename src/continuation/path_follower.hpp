@@ -161,6 +161,8 @@ class PathFollower {
   int principal() const { return principal_; }  ///< PAR index of the continuation parameter
   /// By how much the principal parameter grows along the tangent.
   double principal_direction(const PathPoint& point) const;
+  /// Against which that is small: the size of the parameter times the largest relative change along the tangent.
+  double principal_rate_size(const PathPoint& point) const;
   /// Which share of its value, or of its size where it is zero, it changes by, compared with what changes most along
   /// the tangent.
   double principal_share(const PathPoint& point) const;

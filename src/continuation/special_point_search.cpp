@@ -135,6 +135,7 @@ TestedPoint SpecialPointSearch::tested(const PathPoint& at, const PointData& dat
           data.singular_distance,
           follower_.condition(),
           follower_.principal_direction(at),
+          follower_.principal_rate_size(at),
           is_one_parameter_family_,
           data.courses};
 }

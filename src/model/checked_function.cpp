@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/levels.hpp"
+#include "model/scales.hpp"
 
 namespace tchat {
 
@@ -23,9 +24,15 @@ constexpr double relative_tolerance = level::differences;  // of a function's sc
 
 }  // namespace
 
-std::string point_text(const TestPoint& at) {
+double checked_range(double value) {
+  const double size = std::abs(value);
+  return is_ordinary(size) ? 1.0 + size : size;
+}
+
+std::string point_text(const HybridSystem& system, const TestPoint& at) {
   std::string text = "x = (";
-  for (Eigen::Index i = 0; i < at.x.size(); ++i) text += fmt::format("{}{:.6g}", i > 0 ? ", " : "", at.x(i));
+  for (int k = 1; k <= system.dimension(); ++k)
+    text += fmt::format("{}{:.6g}", k > 1 ? ", " : "", system.unit_of(k) * at.x(k - 1));
   return text + ")";
 }
 
@@ -93,7 +100,7 @@ MatrixComparison compare_with_differences(const CheckedFunction& function, const
   const double value_scale = value(at).lpNorm<Eigen::Infinity>();
   const double scale = 1.0 + std::max(value_scale, supplied.lpNorm<Eigen::Infinity>());
   for (int c = 0; c < function.variables(); ++c) {
-    const double step = 0.02 * (1.0 + std::abs(function.variable(at, c)));
+    const double step = 0.02 * checked_range(function.variable(at, c));
     const auto along = [&](double t) { return value(function.moved(at, c, t)); };
     const ExtrapolatedDifference difference = extrapolated_difference(along, step);
     for (int r = 0; r < function.rows(); ++r) {

@@ -20,8 +20,11 @@ struct TestPoint {
   bool is_random;       // a NaN at a random point is no fault
 };
 
-/// "x = (1, 0.5)"
-std::string point_text(const TestPoint& at);
+/// How far a state or parameter with this value may go: 1 + |x|, |x| where that is not ordinary (model/scales.hpp).
+double checked_range(double value);
+
+/// "x = (1, 0.5)", in the units of the user.
+std::string point_text(const HybridSystem& system, const TestPoint& at);
 
 /// One function F with its variables: c = 0..n-1 are the states, then come parameters, all of them unless some are
 /// chosen.

@@ -15,6 +15,8 @@
 #include "model/checked_function.hpp"
 #include "model/function_values.hpp"
 #include "model/parameter_vector.hpp"
+#include "model/scaled_problem.hpp"
+#include "model/scales.hpp"
 
 namespace tchat {
 
@@ -179,7 +181,7 @@ class FunctionChecker {
     for (int r = 0; r < function_.rows(); ++r)
       if (!std::isfinite(f(r)))
         add_fault(fmt::format("NaN {}", function_.row_name(r)),
-                  fmt::format("{} is {} at {}", function_.row_name(r), f(r), point_text(at)));
+                  fmt::format("{} is {} at {}", function_.row_name(r), f(r), point_text(system_, at)));
   }
 
   /// Writing behind the outputs, reading behind the states and parameters.
@@ -232,12 +234,12 @@ class FunctionChecker {
     const VectorXd expected = function_.value(at);
     if (!((value - expected).norm() <= consistency_factor * (1.0 + expected.norm())))
       add_fault("value", fmt::format("the value of {} with derivatives differs from its value alone at {}",
-                                     system_.function_name(check_.kind, check_.index), point_text(at)));
+                                     system_.function_name(check_.kind, check_.index), point_text(system_, at)));
     const auto compared = compare_with_differences(function_, at, derivative,
                                                    [this](const TestPoint& near) { return function_.value(near); });
     for (const ComparedEntry& entry : compared.faults) {
       FirstFault& fault = first_faults_[{entry.row, entry.column}];
-      if (entry.excess > fault.entry.excess) fault = {entry, point_text(at)};
+      if (entry.excess > fault.entry.excess) fault = {entry, point_text(system_, at)};
     }
     if (compared.worst.excess <= first_excess_) return;
     first_excess_ = compared.worst.excess;
@@ -284,7 +286,7 @@ class FunctionChecker {
     const ComparedEntry& worst = compared.worst;
     if (worst.excess <= second_.excess) return;
     second_ = worst;
-    second_at_ = point_text(at);
+    second_at_ = point_text(system_, at);
     check_.second_error = worst.relative;
     check_.worst_second =
         fmt::format("d2 {} / d {} d {}", of_second_.row_name(worst.row), name, of_second_.variable_name(worst.column));
@@ -302,7 +304,7 @@ class FunctionChecker {
       if (agrees || !first_faults_.empty()) continue;
       add_fault(fmt::format("agreement {}", function_.row_name(r)),
                 fmt::format("d {} / d {} is {:.13g} from the first derivatives but {:.13g} from the second ones at {}",
-                            function_.row_name(r), name, expected(r), along(r), point_text(at)));
+                            function_.row_name(r), name, expected(r), along(r), point_text(system_, at)));
     }
   }
 
@@ -351,10 +353,21 @@ VectorXd base_parameters(const HybridSystem& system, const DerivativeCheckOption
   return par;
 }
 
+/// Powers of two next to the sizes of the states at the first one that is given, or where the problem starts.
+VectorXd checked_units(const HybridSystem& system, const DerivativeCheckOptions& options) {
+  const int n = system.dimension();
+  const double* const initial = system.table().initial_state;
+  if (options.states.empty() && initial == nullptr) return VectorXd::Ones(n);
+  const VectorXd x = options.states.empty() ? VectorXd(Eigen::Map<const VectorXd>(initial, n)) : options.states.front();
+  if (x.size() != n || system.count(FunctionKind::field) == 0) return VectorXd::Ones(n);
+  return units_of(sizes_at(system, 1, x, base_parameters(system, options)).unaryExpr(&size_for_tolerance));
+}
+
 std::vector<TestPoint> test_points(const HybridSystem& system, const DerivativeCheckOptions& options) {
   const VectorXd par = base_parameters(system, options);
   std::mt19937 random(options.seed);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const VectorXd units = checked_units(system, options);
   std::vector<VectorXd> bases = options.states;
   if (bases.empty()) bases.push_back(VectorXd::Zero(system.dimension()));
 
@@ -367,9 +380,10 @@ std::vector<TestPoint> test_points(const HybridSystem& system, const DerivativeC
     if (!options.states.empty()) points.push_back({base, par, false});
     for (int k = 0; k < random_states; ++k) {
       TestPoint point{base, par, true};
-      for (double& x : point.x) x += options.spread * (1.0 + std::abs(x)) * uniform(random);
+      for (Eigen::Index i = 0; i < base.size(); ++i)
+        point.x(i) += options.spread * (units(i) + std::abs(base(i))) * uniform(random);
       for (double& p : point.par.head(system.parameters()))
-        p += 0.1 * options.spread * (1.0 + std::abs(p)) * uniform(random);
+        p += 0.1 * options.spread * checked_range(p) * uniform(random);
       points.push_back(point);
     }
   }
@@ -419,8 +433,12 @@ std::vector<VectorXd> checked_states(const HybridSystem& system, const Derivativ
   return states;
 }
 
-DerivativeCheck check_derivatives(const HybridSystem& system, const DerivativeCheckOptions& options) {
-  const std::vector<TestPoint> points = test_points(system, options);
+DerivativeCheck check_derivatives(const HybridSystem& base, const DerivativeCheckOptions& options) {
+  std::vector<TestPoint> points = test_points(base, options);
+  const VectorXd units = checked_units(base, options);
+  const ScaledProblem scaled(base, {units, VectorXd::Ones(base.parameters())});
+  const HybridSystem& system = units == VectorXd::Ones(units.size()) ? base : scaled.system();
+  for (TestPoint& point : points) point.x = point.x.cwiseQuotient(units);
   DerivativeCheck check;
   check.faults = check_names(system);
   const auto check_all = [&](FunctionKind kind, int count) {

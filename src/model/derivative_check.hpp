@@ -43,7 +43,8 @@ struct DerivativeCheckOptions {
   std::vector<Eigen::VectorXd> states;  ///< n each; none: the random ones are near zero
   Eigen::VectorXd parameters;           ///< PAR(1..), missing ones by the problem, else 1
   int random_states = 5;                ///< near each given state
-  double spread = 0.3;                  ///< x + spread (1 + |x|) times a number in (-1, 1); parameters a tenth of that
+  double spread = 0.3;                  ///< x + spread (1 + |x|) times a number in (-1, 1), 1 being a unit of the
+                                        ///< size of x; parameters a tenth of that
   unsigned seed = 1;
   int segments = 1;  ///< of the orbits on whose ends boundary conditions are checked
 };
@@ -70,8 +71,9 @@ struct DerivativeCheck {
 /// Where functions are looked at: the given states and random ones near them. Throws UserError as below.
 std::vector<Eigen::VectorXd> checked_states(const HybridSystem& system, const DerivativeCheckOptions& options);
 
-/// Throws UserError when a state or parameter given has the wrong length or is not finite.
-DerivativeCheck check_derivatives(const HybridSystem& system, const DerivativeCheckOptions& options = {});
+/// States are taken in units of their sizes. Throws UserError when a state or parameter given has the wrong length or
+/// is not finite.
+DerivativeCheck check_derivatives(const HybridSystem& base, const DerivativeCheckOptions& options = {});
 
 /// The report that `tchat check` prints: dimension, names, a line for each function, the faults.
 /// `further`: lines of other checks, which found a fault unless they are `further_fine`.

@@ -10,16 +10,19 @@ namespace tchat {
 
 StateSizes::StateSizes(const Eigen::MatrixXd& states)
     : largest_(states.cwiseAbs().rowwise().maxCoeff()),
+      couplings_(Eigen::MatrixXd::Zero(states.rows(), states.rows())),
       shares_(Eigen::MatrixXd::Zero(states.rows(), states.rows())),
       in_events_(Eigen::VectorXd::Zero(states.rows())) {}
 
 StateSizes::Terms StateSizes::terms_of(const HybridSystem& system, FunctionKind kind, int index, const double* x,
-                                       const double* par) const {
+                                       const double* par) {
   const Eigen::Index n = largest_.size();
   Terms of{Eigen::VectorXd(system.rows(kind)), Eigen::MatrixXd(system.rows(kind), n), 0.0};
   system.first(kind, index, x, par, {}, of.values.data(), of.terms.data(), nullptr);
   of.constant = of.values(0) - of.terms.row(0).dot(Eigen::Map<const Eigen::VectorXd>(x, n));
-  of.terms = of.terms.cwiseAbs() * largest_.asDiagonal();
+  of.terms = of.terms.cwiseAbs();
+  if (kind == FunctionKind::field && of.terms.allFinite()) couplings_ = couplings_.cwiseMax(of.terms);
+  of.terms *= largest_.asDiagonal();
   return of;
 }
 
@@ -75,11 +78,36 @@ std::vector<bool> StateSizes::known() const {
   return has_size;
 }
 
+namespace {
+
+/// Sizes s for which the entries |a_ij| s_j / s_i outside of the diagonal have columns and rows of the same sum
+/// (Osborne, Journal of the ACM 7, 1960), with the median 1. All 1 where these are usual.
+Eigen::VectorXd balancing_sizes(Eigen::MatrixXd a) {
+  constexpr int most_sweeps = 50;
+  const Eigen::Index n = a.rows();
+  a.diagonal().setZero();
+  Eigen::VectorXd sizes = Eigen::VectorXd::Ones(n);
+  for (int sweep = 0; sweep < most_sweeps; ++sweep)
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double row = a.row(i).dot(sizes) / sizes(i);
+      const double column = a.col(i).dot(sizes.cwiseInverse()) * sizes(i);
+      if (row > 0.0 && column > 0.0) sizes(i) *= std::sqrt(row / column);
+    }
+  if (n == 0 || are_usual(sizes) || !sizes.allFinite()) return Eigen::VectorXd::Ones(n);
+  Eigen::VectorXd sorted = sizes;
+  std::sort(sorted.begin(), sorted.end());
+  return sizes / sorted((n - 1) / 2);
+}
+
+}  // namespace
+
 Eigen::VectorXd StateSizes::sizes() const {
   const std::vector<bool> has_size = known();
   Eigen::VectorXd result = largest_;
+  std::vector<Eigen::Index> unknown;
   for (Eigen::Index i = 0; i < result.size(); ++i)
-    if (!has_size[static_cast<std::size_t>(i)]) result(i) = 1.0;
+    if (!has_size[static_cast<std::size_t>(i)]) unknown.push_back(i);
+  result(unknown) = balancing_sizes(couplings_(unknown, unknown));
   return result;
 }
 

@@ -20,8 +20,8 @@ namespace tchat {
 /// A state that symmetry makes zero still shows rounding, 1e-17 or less, which is not its size. Small as it is, it may
 /// also be a state in large units. It is one, and has a size, only if something depends on it: if, directly or through
 /// other such states, it is a visible part of the terms of an event function, or of the rate or the jump of a state
-/// that has a size. States that are not far smaller than the largest one have one. All others have size 1: nothing is
-/// known of them.
+/// that has a size. States that are not far smaller than the largest one have one. Of the others nothing is known but
+/// how they depend on each other: their sizes balance f_x, with the median 1, and are 1 where that makes little of it.
 class StateSizes {
  public:
   /// `states`: some of an orbit, n to a column.
@@ -42,11 +42,12 @@ class StateSizes {
     Eigen::MatrixXd terms;   // |dF_j / dx_i| times the size of x_i
     double constant;         // what is left of the first value without its linear terms
   };
-  Terms terms_of(const HybridSystem& system, FunctionKind kind, int index, const double* x, const double* par) const;
+  Terms terms_of(const HybridSystem& system, FunctionKind kind, int index, const double* x, const double* par);
   void add_states(const Terms& of);
 
   Eigen::VectorXd largest_;
-  Eigen::MatrixXd shares_;  // (j, i): the largest part that state i has in the terms of values for state j
+  Eigen::MatrixXd couplings_;  // (j, i): the largest |df_j / dx_i|
+  Eigen::MatrixXd shares_;     // (j, i): the largest part that state i has in the terms of values for state j
   Eigen::VectorXd in_events_;
   std::optional<Eigen::VectorXd> in_balance_;  // of a state at rest: the share in sums of terms that cancel
 };

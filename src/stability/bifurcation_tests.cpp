@@ -94,9 +94,10 @@ FoldTest::FoldTest(int parameter, const std::vector<int>& free_parameters, const
 }
 
 TestValue FoldTest::evaluate(const TestedPoint& point) const {
-  if (is_monitor_) return TestValue::of(point.principal_rate, level::converged);
-  return TestValue::of(is_duration_ ? point.tangent.durations(index_) : point.tangent.globals(index_),
-                       level::converged);
+  const double rate = is_monitor_    ? point.principal_rate
+                      : is_duration_ ? point.tangent.durations(index_)
+                                     : point.tangent.globals(index_);
+  return TestValue::of(rate, level::converged * point.principal_rate_size);
 }
 
 /// The branch also turns where h_x f = 0: at a section that becomes tangent its two ways through the orbit meet, while

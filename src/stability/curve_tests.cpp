@@ -193,13 +193,20 @@ class TurningTest final : public TestFunction {
       : principal_(principal), what_(std::move(what)), stop_(stop) {}
   std::string name() const override { return "extremum"; }
   TestValue evaluate(const TestedPoint& point) const override {
-    return TestValue::of(point.tangent.globals(principal_), level::converged);
+    return TestValue::of(point.tangent.globals(principal_), level::converged * point.principal_rate_size);
   }
   std::string reason_to_vanish(const TestedPoint&) const override { return "ICP(1) stays the same along the curve"; }
   /// At a cusp no parameter moves, and where a section becomes tangent only the cut turns.
   bool is_genuine(const TestedPoint& point) const override {
-    const bool moves = (point.tangent.globals.array().abs() > level::same).any();
-    return moves && touching_segment(point) < 0;
+    const DefiningSystem& system = point.condensed.system();
+    const auto share = [&](Eigen::Index g) {
+      return std::abs(point.tangent.globals(g)) / parameter_size(system, point.orbit, static_cast<int>(g));
+    };
+    const double least =
+        level::same * point.principal_rate_size / parameter_size(system, point.orbit, static_cast<int>(principal_));
+    for (Eigen::Index g = 0; g < point.tangent.globals.size(); ++g)
+      if (share(g) > least) return touching_segment(point) < 0;
+    return false;
   }
   SpecialPoint classify(const TestedPoint&, bool) const override {
     return {PointType::user, {UserPointKind::extremum}, stop_, what_};

@@ -361,7 +361,7 @@ SpecialPoint AccelerationTest::classify(const TestedPoint&, bool) const {
 }
 
 TestValue GrazingTurnTest::evaluate(const TestedPoint& point) const {
-  return TestValue::of(point.tangent.globals(parameter_), level::converged);
+  return TestValue::of(point.tangent.globals(parameter_), level::converged * point.principal_rate_size);
 }
 
 bool GrazingTurnTest::is_genuine(const TestedPoint& point) const {

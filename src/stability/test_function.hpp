@@ -91,6 +91,7 @@ struct TestedPoint {
   double singular_distance = 1.0;  ///< of the bordered problem to a singular one, with its determinant's sign
   const OrbitCondition* condition = nullptr;  ///< of a two-parameter curve, evaluated at this point
   double principal_rate = 0.0;                ///< by which the principal parameter grows along the tangent
+  double principal_rate_size = 1.0;           ///< against which that is small
   /// Periodic orbits in one free parameter, nothing held: where the problem is singular a multiplier is +1.
   bool one_parameter_family = false;
   std::span<const EventCourse> courses = {};  ///< of the monitored event functions, as far as they are known
