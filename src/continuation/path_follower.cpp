@@ -413,8 +413,10 @@ double PathFollower::relative_length(const PathPoint& point) const {
 }
 
 double PathFollower::principal_rate_size(const PathPoint& point) const {
-  const double value = point.orbit.par(principal_ - 1);
-  return relative_length(point) * problem_.system().system().parameter_size(principal_, value);
+  const double value = std::abs(point.orbit.par(principal_ - 1));
+  const HybridSystem& system = problem_.system().system();
+  const bool is_parameter = principal_ <= system.parameters();  // else a duration or a monitor
+  return relative_length(point) * (is_parameter || value == 0.0 ? system.parameter_size(principal_, value) : value);
 }
 
 double PathFollower::principal_share(const PathPoint& point) const {

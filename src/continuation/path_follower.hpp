@@ -161,6 +161,8 @@ class PathFollower {
   int principal() const { return principal_; }  ///< PAR index of the continuation parameter
   /// By how much the principal parameter grows along the tangent.
   double principal_direction(const PathPoint& point) const;
+  /// The largest change along the tangent, each relative to its size.
+  double relative_length(const PathPoint& point) const;
   /// Against which that is small: the size of the parameter times the largest relative change along the tangent.
   double principal_rate_size(const PathPoint& point) const;
   /// Which share of its value, or of its size where it is zero, it changes by, compared with what changes most along
@@ -185,7 +187,6 @@ class PathFollower {
   CondensedSystem::Singularity singularity(const PathPoint& point);
 
  private:
-  double relative_length(const PathPoint& point) const;
   NewtonResult step_from_plane(const PathPoint& from, double ahead, PathPoint& to, double oldest);
   double ahead(const PathPoint& from, double ds, const Orbit& x) const;
   NewtonResult correct_and_orient(PathPoint& point, const OrbitVector& row, double change_along_row, double oldest);

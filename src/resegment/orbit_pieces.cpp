@@ -11,6 +11,7 @@
 #include "orbit/mesh_adaptation.hpp"
 #include "orbit/periodic_orbit_system.hpp"
 #include "run/branch_setup.hpp"
+#include "run/own_units.hpp"
 
 namespace tchat {
 
@@ -266,9 +267,17 @@ constexpr double correction_moves_at_most = level::same;
 /// A smaller part of the tangent is no change.
 constexpr double no_change = level::converged;
 
-/// d(h_x f) at the end of segment `impact` along the tangent: the second condition of a grazing orbit.
-double slope_along_tangent(const HybridSystem& system, const DefiningSystem& defining, const PathPoint& point,
-                           int impact) {
+/// -1, 0 or 1: the sign of a . t + b . g, 0 where that is rounding of its terms.
+int sign_of(const Eigen::RowVectorXd& a, const Eigen::VectorXd& t, const Eigen::RowVectorXd& b,
+            const Eigen::VectorXd& g) {
+  const double rate = a.dot(t) + b.dot(g);
+  const double terms = a.cwiseAbs().dot(t.cwiseAbs()) + b.cwiseAbs().dot(g.cwiseAbs());
+  return std::abs(rate) > no_change * terms ? (rate > 0.0 ? 1 : -1) : 0;
+}
+
+/// The sign of d(h_x f) at the end of segment `impact` along the tangent: the second condition of a grazing orbit.
+int slope_along_tangent(const HybridSystem& system, const DefiningSystem& defining, const PathPoint& point,
+                        int impact) {
   const GrazingOrbitSystem grazing(system, defining.signature(), defining.free_parameters(), impact);
   Eigen::Vector2d values;
   Eigen::Matrix2Xd by_state(2, grazing.dimension());
@@ -276,35 +285,36 @@ double slope_along_tangent(const HybridSystem& system, const DefiningSystem& def
   grazing.end_derivatives(impact, point.orbit.end(impact), point.orbit.par.data(), values.data(), by_state.data(),
                           by_parameter.data());
   const Eigen::Index end = point.orbit.shape.last_node(impact);
-  return by_state.row(1).dot(point.tangent.states.col(end)) + by_parameter.row(1).dot(point.tangent.globals);
+  return sign_of(by_state.row(1), point.tangent.states.col(end), by_parameter.row(1), point.tangent.globals);
 }
 
-/// dh at the end of a segment along the tangent.
-double event_along_tangent(const HybridSystem& system, const DefiningSystem& defining, const PathPoint& point,
-                           const Birth::EndEvent& at) {
-  Eigen::VectorXd by_state(defining.dimension());
-  Eigen::VectorXd by_parameter(defining.free_count());
+/// The sign of dh at the end of a segment along the tangent.
+int event_along_tangent(const HybridSystem& system, const DefiningSystem& defining, const PathPoint& point,
+                        const Birth::EndEvent& at) {
+  Eigen::RowVectorXd by_state(defining.dimension());
+  Eigen::RowVectorXd by_parameter(defining.free_count());
   double h = 0.0;
   system.first(FunctionKind::event, at.event, point.orbit.end(at.segment), point.orbit.par.data(),
                defining.free_parameters(), &h, by_state.data(), by_parameter.data());
   const Eigen::Index end = point.orbit.shape.last_node(at.segment);
-  return by_state.dot(point.tangent.states.col(end)) + by_parameter.dot(point.tangent.globals);
+  return sign_of(by_state, point.tangent.states.col(end), by_parameter, point.tangent.globals);
 }
 
-/// dh along the tangent at a place where the surface is touched: as h_x f = 0 there, that of the least value of h.
-double least_along_tangent(const HybridSystem& system, const DefiningSystem& defining, const PathPoint& point,
-                           const Birth::InnerContact& at) {
+/// The sign of dh along the tangent at a place where the surface is touched: as h_x f = 0 there, that of the least
+/// value of h.
+int least_along_tangent(const HybridSystem& system, const DefiningSystem& defining, const PathPoint& point,
+                        const Birth::InnerContact& at) {
   const Orbit& x = point.orbit;
   const CollocationRule rule(x.shape.collocation);
   Orbit tangent = x;
   tangent.states = point.tangent.states;
   const Eigen::VectorXd state = state_at(x, rule, at.segment, at.tau);
-  Eigen::VectorXd by_state(defining.dimension());
-  Eigen::VectorXd by_parameter(defining.free_count());
+  Eigen::RowVectorXd by_state(defining.dimension());
+  Eigen::RowVectorXd by_parameter(defining.free_count());
   double h = 0.0;
   system.first(FunctionKind::event, at.event, state.data(), x.par.data(), defining.free_parameters(), &h,
                by_state.data(), by_parameter.data());
-  return by_state.dot(state_at(tangent, rule, at.segment, at.tau)) + by_parameter.dot(point.tangent.globals);
+  return sign_of(by_state, state_at(tangent, rule, at.segment, at.tau), by_parameter, point.tangent.globals);
 }
 
 /// Of parameters and durations. The monitors behind them in PAR are evaluated by the run, not stored in its start.
@@ -319,23 +329,28 @@ bool has_moved(const HybridSystem& system, const Orbit& found, const Orbit& star
   return false;
 }
 
-int sign_of(double rate) { return std::abs(rate) > no_change ? (rate > 0.0 ? 1 : -1) : 0; }
-
 }  // namespace
 
-int side_of_birth(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start,
+int side_of_birth(const HybridSystem& users, const RunSettings& settings, const SelectedStart& start,
                   const Birth& birth) {
   try {
-    const BranchSetup setup = set_up_branch(system, settings, start);
+    const OwnUnits own = in_own_units(users, settings, start);
+    const HybridSystem& system = own.system();
+    const BranchSetup setup = set_up_branch(system, own.settings, own.start);
     const PathPoint& point = setup.start.point;
     if (has_moved(system, point.orbit, start.start.orbit)) return 0;
+    const double least_duration = no_change * setup.follower->relative_length(point) * point.orbit.period();
+    const auto duration_along_tangent = [&](int s) {
+      const double rate = point.tangent.durations(s);
+      return std::abs(rate) > least_duration ? (rate > 0.0 ? 1 : -1) : 0;
+    };
     std::vector<int> sides;
-    for (const int s : birth.impacts) sides.push_back(-sign_of(slope_along_tangent(system, *setup.defining, point, s)));
-    for (const int s : birth.empty_segments) sides.push_back(sign_of(point.tangent.durations(s)));
+    for (const int s : birth.impacts) sides.push_back(-slope_along_tangent(system, *setup.defining, point, s));
+    for (const int s : birth.empty_segments) sides.push_back(duration_along_tangent(s));
     for (const Birth::EndEvent& late : birth.late_events)
-      sides.push_back(sign_of(event_along_tangent(system, *setup.defining, point, late)));
+      sides.push_back(event_along_tangent(system, *setup.defining, point, late));
     for (const Birth::InnerContact& lost : birth.lost_contacts)
-      sides.push_back(sign_of(least_along_tangent(system, *setup.defining, point, lost)));
+      sides.push_back(least_along_tangent(system, *setup.defining, point, lost));
     for (const int side : sides)
       if (side != sides.front()) return 0;
     return sides.empty() ? 0 : sides.front();

@@ -71,7 +71,7 @@ struct Birth {
 /// The sign of DS with which the run of `settings` from `start` leads to where all of these exist. 0 when they
 /// disagree, when nothing changes along the tangent, and when the run's first point is not the start (or none is
 /// found).
-int side_of_birth(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start,
+int side_of_birth(const HybridSystem& users, const RunSettings& settings, const SelectedStart& start,
                   const Birth& birth);
 
 // An orbit as a NAME.dat file: parameter values and durations in comments, then rows of the states at the mesh points

@@ -234,7 +234,9 @@ bool has_moved_far(const HybridSystem& system, int k, double asked, double value
 std::string moved_beside(const Orbit& start, const Orbit& found, const DefiningSystem& system, int principal,
                          const std::string& principal_name, const std::string& source) {
   std::string text;
+  const int unfolding = system.unfolding(start) ? system.layout().unfolding(system.segments()) : 0;
   for (const int k : system.free_parameters()) {
+    if (k == unfolding) continue;  // zero but for rounding, whose size is not known
     const double asked = start.par(k - 1);
     const double value = found.par(k - 1);
     if (k == principal || !has_moved_far(system.system(), k, asked, value)) continue;

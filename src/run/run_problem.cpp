@@ -100,8 +100,8 @@ std::string direction_text(const BranchSetup& setup, const SelectedStart& start,
                                                 "that had DS < 0 with DS < 0)\n",
                                                 -step));
   const double rate = step * setup.follower->principal_direction(setup.start.point);
-  constexpr double rounding = level::tolerance;  // of a unit tangent: the parameter has an extremum
-  const bool is_known = std::abs(rate) > rounding * std::abs(step);
+  constexpr double rounding = level::tolerance;  // the parameter has an extremum
+  const bool is_known = setup.follower->principal_share(setup.start.point) > rounding;
   // At a branch point the computed tangent is any mixture of those of both branches.
   const bool is_single = !start_is_branch_point(start);
   if (!start.from_solution || setup.type->facts().switches_branch || !is_known || !is_single) return "";
