@@ -8,6 +8,7 @@
 
 #include "base/levels.hpp"
 #include "linear/frontal_lu.hpp"
+#include "model/scales.hpp"
 #include "orbit/collocation_rule.hpp"
 
 namespace tchat {
@@ -36,7 +37,16 @@ bool is_pronounced(const EndVector& row, const EndVector& null_vector) {
                                [](double a, double z) { return std::abs(a * z); }) < most_cancelled;
 }
 
-bool has_unit_length(const EndVector& v) { return std::abs(dot(v, v) - 1.0) < level::negligible; }
+/// Entry by entry.
+void divide(EndVector& v, const EndVector& units) {
+  for (std::size_t k = 0; k < v.size(); ++k) v[k] /= units[k];
+}
+
+bool has_unit_length(const EndVector& v, const EndVector& units) {
+  const double square = std::transform_reduce(v.begin(), v.end(), units.begin(), 0.0, std::plus<>(),
+                                              [](double value, double unit) { return std::pow(value / unit, 2); });
+  return std::abs(square - 1.0) < level::negligible;
+}
 
 bool are_finite(const std::vector<EndVector>& rows) {
   return std::all_of(rows.begin(), rows.end(), [](const EndVector& row) { return std::isfinite(dot(row, row)); });
@@ -131,6 +141,7 @@ CondensedSystem::CondensedSystem(const DefiningSystem& system, const OrbitShape&
   solution_ = rhs_;
   null_ends_.assign(index(std::max(closing_, 1)), rhs_);
   closing_rows_.assign(index(closing_), rhs_);
+  end_units_.assign(rhs_.size(), 1.0);
   x_ = slope_ = zeros(n_);
 }
 
@@ -217,8 +228,17 @@ Linearization CondensedSystem::linearize(const Orbit& x, std::span<const EndVect
                                          std::span<const OrbitVector> general, OrbitResidual& residual) {
   const Linearization condensed = condense(x, general, residual);
   if (condensed != Linearization::ready) return condensed;
+  choose_units(x);
   if (!assemble(x, general, residual)) return Linearization::not_finite;
   return factorize(closing) ? Linearization::ready : Linearization::singular;
+}
+
+/// Durations and free parameters of no ordinary size are taken in units of that where a length of vectors is asked for.
+void CondensedSystem::choose_units(const Orbit& x) {
+  const auto unit = [](double size) { return is_ordinary(size) ? 1.0 : size; };
+  for (int s = 0; s < shape_.segments; ++s)
+    end_units_[index(duration_unknown(s))] = unit(time_size(system_, x) + std::abs(x.duration(s)));
+  for (int g = 0; g < globals_; ++g) end_units_[index(global_unknown(g))] = unit(parameter_size(system_, x, g));
 }
 
 Linearization CondensedSystem::condense(const Orbit& x, std::span<const OrbitVector> general, OrbitResidual& residual) {
@@ -253,16 +273,21 @@ bool CondensedSystem::close_along_null_vectors(bool known) {
   constexpr int most_rounds = 3;
   known = known && are_finite(null_ends_);
   for (int trial = 0; trial < most_rounds && !known; ++trial) {
-    for (std::size_t r = 0; r < closing_rows_.size(); ++r)
+    for (std::size_t r = 0; r < closing_rows_.size(); ++r) {
       put_any_row(r + static_cast<std::size_t>(trial) * closing_rows_.size(), closing_rows_[r]);
+      divide(closing_rows_[r], end_units_);
+    }
     known = factorize_with(closing_rows_) && are_finite(null_ends_);
   }
   if (!known) return false;
   for (int round = 0; round < most_rounds; ++round) {
     std::copy(null_ends_.begin(), null_ends_.end(), closing_rows_.begin());
+    for (EndVector& row : closing_rows_) divide(row, end_units_);
     make_orthonormal(closing_rows_);
+    for (EndVector& row : closing_rows_) divide(row, end_units_);
     if (!factorize_with(closing_rows_)) return false;
-    if (std::all_of(null_ends_.begin(), null_ends_.end(), has_unit_length)) break;  // nearly these rows
+    const auto is_nearly_its_row = [&](const EndVector& z) { return has_unit_length(z, end_units_); };
+    if (std::all_of(null_ends_.begin(), null_ends_.end(), is_nearly_its_row)) break;
   }
   return true;
 }

@@ -175,6 +175,7 @@ class CondensedSystem {
   void keep_segment_blocks(int s);
   bool assemble(const Orbit& x, std::span<const OrbitVector> general, OrbitResidual& residual);
   bool factorize(std::span<const EndVector> closing);
+  void choose_units(const Orbit& x);
   bool close_along_null_vectors(bool known);
   bool factorize_with(std::span<const EndVector> closing);
   void condense_right_hand_sides(const std::vector<double>& collocation);
@@ -217,6 +218,7 @@ class CondensedSystem {
   std::ptrdiff_t closing_place_ = 0;  // of closing rows, in triplet_values_
   bool closing_rows_gave_way_ = false;
   std::vector<EndVector> closing_rows_;  // where others than those given stand
+  EndVector end_units_;                  // of the unknowns at the ends, see choose_units()
   EndVector rhs_;
   EndVector solution_;                // what SparseLu sees of dx
   std::vector<EndVector> null_ends_;  // and of null vectors: one for each closing row, known after linearize()
