@@ -8,7 +8,8 @@ command must find what it finds for the original: special points with their type
 numbers of points.
 
 Steps are compared with weights that are rewritten like everything else: THU and THL are given. Those of pipelines are 1
-in the units of the original, those of other systems are shares of the sizes of states and of the range of the parameter.
+in the units of the original, those of other systems are shares of the sizes of states and of the range of the
+parameter.
 """
 
 import argparse
@@ -83,6 +84,10 @@ def differences(original, other):
     return found
 
 
+def shortened(text):
+    return " ".join(text.split())[:300]
+
+
 class Campaign:
     def __init__(self, options):
         self.options = options
@@ -121,21 +126,21 @@ class Campaign:
             found, used = self.differences(k, [kind])
             if not found:
                 continue
-            print("  %s alone: %s" % (kind, found[0][:200]), flush=True)
+            print("  %s alone: %s" % (kind, shortened(found[0])), flush=True)
             names = sorted(used.get(kind, ())) if kind in ("states", "parameters", "values", "events") else []
             for name in names if len(names) > 1 else []:
                 found, _ = self.differences(k, [kind], [name])
                 if found:
-                    print("    %s alone: %s" % (name, found[0][:200]), flush=True)
+                    print("    %s alone: %s" % (name, shortened(found[0])), flush=True)
 
     def run(self):
         options = self.options
-        wrong, numbers = 0, [options.only] if options.only is not None else range(options.count)
+        wrong, numbers = 0, options.only or range(options.count)
         for k in numbers:
             found, _ = self.differences(k, options.kinds, options.names)
             wrong += bool(found)
             for text in found[:PRINTED]:
-                print("%s, rewriting %d: %s" % (self.names[k % len(self.names)], k, text[:300]), flush=True)
+                print("%s, rewriting %d: %s" % (self.names[k % len(self.names)], k, shortened(text)), flush=True)
             if found and options.explain:
                 self.explain(k)
         labels = sum(len(section["labels"]) for diagram in self.originals.values()
@@ -159,7 +164,8 @@ def main():
     parser.add_argument("tchat", type=pathlib.Path)
     parser.add_argument("--folder", type=pathlib.Path, required=True, help="for the files of all runs")
     parser.add_argument("--count", type=int, default=300, help="rewritings, in turn of all systems")
-    parser.add_argument("--only", type=int, help="the one of this number, from 0")
+    parser.add_argument("--only", type=lambda text: [int(k) for k in text.split(",")],
+                        help="those of these numbers, from 0")
     parser.add_argument("--decades", type=float, default=9.0, help="units are from 10^-N to 10^N")
     parser.add_argument("--kinds", type=kinds_of, default=rewriting.KINDS,
                         help="what is rewritten, of units (%s), %s" % (", ".join(rewriting.UNITS),

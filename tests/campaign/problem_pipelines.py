@@ -67,11 +67,11 @@ class Pipeline:
         self.rotation_allowed = not any("HOLD" in word and value in word for words in self.commands
                                         for word in words for value in self.problem.values)
         self.steps, self.failed, self.said, self.sections = ["check"], {}, {}, {}
-        self.rotated_files = set()
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "plugin").mkdir(exist_ok=True)
         generic = pathlib.Path(__file__).resolve().parent / "rewritten_problem.cpp"
-        (folder / "plugin" / (name + ".cpp")).write_text(self.problem.plugin(os.path.relpath(generic, folder / "plugin")))
+        plugin = folder / "plugin" / (name + ".cpp")
+        plugin.write_text(self.problem.plugin(os.path.relpath(generic, plugin.parent)))
         self.check()
         before = user_seconds()
         for words in self.commands:
@@ -134,7 +134,7 @@ class Pipeline:
         return self.by.rotation(segments) if self.rotation_allowed and constants["IPS"] == "180" else 0
 
     def constants_file(self, path, starts_from_data):
-        """The name of the file in the folder, which is written at first use; those of a simulation are there already."""
+        """The name of the file in the folder. It is written at first use, unless a simulation has written it."""
         original = pathlib.Path(path)
         if not original.is_absolute():
             local = self.source / "constants" / self.name / ("gc." + path)
@@ -151,8 +151,6 @@ class Pipeline:
             found = rewriting.constants_of(self.call(["constants", str(original), "--keyword"]))
             by = self.rotation(found) if starts_from_data else 0
             target.write_text(rewriting.text_of_constants(self.problem.constants(found, by)))
-            if by:
-                self.rotated_files.add(target.name)
         return str(target.relative_to(self.folder))
 
     def read_constants(self, file):
@@ -198,9 +196,12 @@ class Pipeline:
             if "--dat" in words and file is None:
                 changed += ["--free", self.problem.parameters[0]]
         constants = self.constants_of_command(command, file, words)
-        first = rewriting.list_of(settings.get("ICP", "")) or [
-            self.problem.new_name(name) for name in rewriting.list_of(constants.get("ICP", ""))] or ["?"]
-        first = self.problem.name_of(first[0])
+        before = self.problem.new_name((rewriting.list_of(constants.get("ICP", "")) or ["?"])[0])
+        first = self.problem.name_of((rewriting.list_of(settings.get("ICP", "")) or [before])[0])
+        if first != before:  # the bounds of the file are now those of another parameter
+            for key in ("RL0", "RL1"):
+                if key in constants and key not in settings and abs(float(constants[key])) < rewriting.NO_BOUND:
+                    settings[key] = repr(float(constants[key]) * self.problem.unit(before))
         segments = len(rewriting.list_of(constants.get("GCFIND", "[1]")))
         rotation = self.rotation(constants) if constants.get("IPS") == "180" else 0
         settings = {key: self.problem.constant(key, text, first, segments, rotation if "start(" in text else 0)

@@ -12,6 +12,8 @@ UNITS = ("states", "time", "parameters", "values")
 KINDS = (*UNITS, "order", "idle", "signature", "events")
 # PAR(61), PAR(62), ... are the durations.
 FIRST_DURATION = 61
+# Bounds from here on are none.
+NO_BOUND = 1e300
 # Constants that have one entry for each segment.
 OF_SEGMENTS = ("GCSEGTYP", "GCFIND", "GCHIND", "GCGIND", "GCHGRZIND")
 
@@ -210,7 +212,7 @@ class ProblemRewriting:
 
     def value(self, text, quantity):
         number = float(text)
-        if abs(number) >= 1e300 or number == 0.0:  # no bound; in any unit
+        if abs(number) >= NO_BOUND or number == 0.0:
             return text
         return repr(number / self.unit(quantity))
 
