@@ -101,13 +101,16 @@ Eigen::VectorXd balancing_sizes(Eigen::MatrixXd a) {
 
 }  // namespace
 
-Eigen::VectorXd StateSizes::sizes() const {
+Eigen::VectorXd StateSizes::sizes(bool balances) const {
   const std::vector<bool> has_size = known();
   Eigen::VectorXd result = largest_;
   std::vector<Eigen::Index> unknown;
   for (Eigen::Index i = 0; i < result.size(); ++i)
     if (!has_size[static_cast<std::size_t>(i)]) unknown.push_back(i);
-  result(unknown) = balancing_sizes(couplings_(unknown, unknown));
+  if (balances)
+    result(unknown) = balancing_sizes(couplings_(unknown, unknown));
+  else
+    result(unknown).setOnes();
   return result;
 }
 

@@ -32,7 +32,9 @@ class StateSizes {
   /// The only state is at rest. Where the terms of its rate do not cancel it is rounding of zero.
   void add_at_rest(const HybridSystem& system, int field, const double* x, const double* par);
 
-  Eigen::VectorXd sizes() const;
+  /// `balances`: else states of which nothing else is known have the size 1, for entries of f_x may be rounding of
+  /// zero.
+  Eigen::VectorXd sizes(bool balances = true) const;
   /// Of each state: has it a size?
   std::vector<bool> known() const;
 

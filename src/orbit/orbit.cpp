@@ -118,13 +118,13 @@ double event_scale(const HybridSystem& system, const Orbit& x, int event) {
   return largest;
 }
 
-Eigen::VectorXd state_sizes(const HybridSystem& system, const Signature& signature, const Orbit& x) {
+Eigen::VectorXd state_sizes(const HybridSystem& system, const Signature& signature, const Orbit& x, bool balances) {
   constexpr int parts = 16;
   const double* const par = x.par.data();
   StateSizes sizes(x.states);
   if (x.shape.stored_nodes() == 1) {
     sizes.add_at_rest(system, signature.front().field, x.start(0), par);
-    return sizes.sizes();
+    return sizes.sizes(balances);
   }
   for (int s = 0; s < x.shape.segments; ++s) {
     const IndexVector& v = signature[static_cast<std::size_t>(s) % signature.size()];
@@ -134,7 +134,7 @@ Eigen::VectorXd state_sizes(const HybridSystem& system, const Signature& signatu
     sizes.add(system, FunctionKind::jump, v.jump, x.end(s), par);
     if (v.event != no_function) sizes.add(system, FunctionKind::event, v.event, x.end(s), par);
   }
-  return sizes.sizes();
+  return sizes.sizes(balances);
 }
 
 Eigen::VectorXd state_uncertainty(const Orbit& x) {

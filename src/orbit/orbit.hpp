@@ -149,8 +149,9 @@ inline constexpr double orbit_accuracy = level::orbit;
 double event_scale(const HybridSystem& system, const Orbit& x, int event);
 
 /// The sizes of its states (StateSizes, by the functions of the segments of this signature, which the orbit may run
-/// through more than once).
-Eigen::VectorXd state_sizes(const HybridSystem& system, const Signature& signature, const Orbit& x);
+/// through more than once, and `balances` as there).
+Eigen::VectorXd state_sizes(const HybridSystem& system, const Signature& signature, const Orbit& x,
+                            bool balances = true);
 
 /// How well states of the orbit are known, n entries: orbit_accuracy times the largest |x_k| over the orbit, and not
 /// less than rounding of the largest of all states, for a state that is zero throughout shows nothing but rounding.

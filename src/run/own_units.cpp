@@ -47,6 +47,13 @@ bool has_shrunk(const SelectedStart& start) {
   return start.from_solution && start.start.orbit.shape.stored_nodes() > 1 && is_birth_of_orbits(start.type);
 }
 
+/// An equilibrium at which derivatives of its rate vanish: they say nothing of the sizes of states.
+bool has_zero_eigenvalue(const SelectedStart& start) {
+  const std::vector<PointType> types{PointType::equilibrium_fold, PointType::cusp, PointType::bogdanov_takens,
+                                     PointType::zero_hopf};
+  return start.from_solution && start.start.orbit.shape.stored_nodes() == 1 && is_among(types, start.type);
+}
+
 /// Sets to 1, not known, the sizes of states that are zero but for the amplitude of the orbit, and of smaller ones.
 void forget_amplitudes(const Orbit& x, Eigen::VectorXd& sizes) {
   const auto range = [&](Eigen::Index k) { return x.states.row(k).maxCoeff() - x.states.row(k).minCoeff(); };
@@ -60,7 +67,7 @@ void forget_amplitudes(const Orbit& x, Eigen::VectorXd& sizes) {
 }  // namespace
 
 OwnUnits in_own_units(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start) {
-  Eigen::VectorXd sizes = state_sizes(system, settings.signature(), start.start.orbit);
+  Eigen::VectorXd sizes = state_sizes(system, settings.signature(), start.start.orbit, !has_zero_eigenvalue(start));
   if (has_shrunk(start)) forget_amplitudes(start.start.orbit, sizes);
   const Eigen::VectorXd units = units_of(sizes);
   OwnUnits own{

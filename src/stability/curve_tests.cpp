@@ -196,17 +196,18 @@ class TurningTest final : public TestFunction {
     return TestValue::of(point.tangent.globals(principal_), level::converged * point.principal_rate_size);
   }
   std::string reason_to_vanish(const TestedPoint&) const override { return "ICP(1) stays the same along the curve"; }
-  /// At a cusp no parameter moves, and where a section becomes tangent only the cut turns.
+  /// At a cusp, and where a curve turns back into itself, all parameters turn; where a section becomes tangent only the
+  /// cut does.
   bool is_genuine(const TestedPoint& point) const override {
+    constexpr double alone = 0.01;
     const DefiningSystem& system = point.condensed.system();
     const auto share = [&](Eigen::Index g) {
       return std::abs(point.tangent.globals(g)) / parameter_size(system, point.orbit, static_cast<int>(g));
     };
-    const double least =
-        level::same * point.principal_rate_size / parameter_size(system, point.orbit, static_cast<int>(principal_));
+    double of_others = 0.0;
     for (Eigen::Index g = 0; g < point.tangent.globals.size(); ++g)
-      if (share(g) > least) return touching_segment(point) < 0;
-    return false;
+      if (g != principal_) of_others = std::max(of_others, share(g));
+    return share(principal_) < alone * of_others && touching_segment(point) < 0;
   }
   SpecialPoint classify(const TestedPoint&, bool) const override {
     return {PointType::user, {UserPointKind::extremum}, stop_, what_};

@@ -56,6 +56,33 @@ struct RightByHand : Sound {
   }
 };
 
+/// A pendulum whose angle is counted in millions of turns, and a wall at 2e-9 of them.
+struct Small {
+  static constexpr int dimension = 2, parameters = 1, fields = 1, events = 1, jumps = 1;
+  static constexpr double initial_parameters[] = {2e-9};
+  static constexpr double initial_state[] = {1e-9, 3e7};
+  template <class T>
+  void field(int, const T* x, const T*, T* f) const {
+    f[0] = 1e-16 * x[1];
+    f[1] = -1e7 * sin(1e9 * x[0]);
+  }
+  template <class T>
+  T event(int, const T* x, const T* p) const {
+    return p[0] - x[0];
+  }
+  template <class T>
+  void jump(int, const T* x, const T*, T* g) const {
+    g[0] = x[0], g[1] = -0.8 * x[1];
+  }
+};
+
+struct SmallButWrong : Small {
+  void field_derivatives(int, const double* x, const double*, double* dx, double*) const {
+    dx[1] = -1e16 * std::cos(1e9 * x[0]) * (1.0 + 1e-6);
+    dx[2] = 1e-16;
+  }
+};
+
 struct Unset : Sound {
   template <class T>
   void field(int, const T* x, const T*, T* f) const {
@@ -142,6 +169,7 @@ TEST_CASE("extrapolated differences know how good they are") {
 TEST_CASE("sound problems pass") {
   CHECK_THAT(report<Sound>(), Contains("No fault found"));
   CHECK_THAT(report<RightByHand>(), Contains("No fault found"));
+  CHECK_THAT(report<Small>(), Contains("No fault found"));
   CHECK_THAT(report<LinearOscillator>(), Contains("parameters alpha omega zeta r"));
   CHECK_THAT(report<LinearOscillator>(), Contains("No fault found"));
   DerivativeCheckOptions options;
@@ -171,6 +199,10 @@ TEST_CASE("a wrong second derivative is named") {
   CHECK_FALSE(check.fine());
   CHECK_THAT(to_text(system, check), Contains("fault: d2 f_1[b] / d a d a is "));
   CHECK(check.functions[1].faults.empty());
+}
+
+TEST_CASE("wrong derivatives are found whatever the units of states are") {
+  CHECK_THAT(report<SmallButWrong>(), Contains("fault: d f_1[U(2)] / d U(1)"));
 }
 
 TEST_CASE("directional derivatives that contradict the first ones are named") {
