@@ -51,7 +51,7 @@ bool has_shrunk(const SelectedStart& start) {
 bool has_zero_eigenvalue(const SelectedStart& start) {
   const std::vector<PointType> types{PointType::equilibrium_fold, PointType::cusp, PointType::bogdanov_takens,
                                      PointType::zero_hopf};
-  return start.from_solution && start.start.orbit.shape.stored_nodes() == 1 && is_among(types, start.type);
+  return start.from_solution && start.start.orbit.shape.stored_nodes() == 1 && is_among(types, label_type(start.type));
 }
 
 /// Sets to 1, not known, the sizes of states that are zero but for the amplitude of the orbit, and of smaller ones.

@@ -177,7 +177,8 @@ std::string unmonitored_events(const HybridSystem& system, const FoundOrbit& orb
   for (std::size_t s = 0; s < orbit.signature.size(); ++s) {
     const Eigen::MatrixXd states = samples.states.middleRows(static_cast<Eigen::Index>(s) * n, n);
     for (const int event : orbit.modes[s].all_events())
-      if (EventValues(system, event, states, par, orbit.sizes).is_negative() && !is_section(system, orbit, s, event, states, par))
+      if (EventValues(system, event, states, par, orbit.sizes).is_negative() &&
+          !is_section(system, orbit, s, event, states, par))
         text += fmt::format(
             "Event {} ({}) is negative on segment {}, so it is not monitored there: if field {} ({}) holds only where "
             "it "

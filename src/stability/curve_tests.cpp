@@ -207,7 +207,9 @@ class TurningTest final : public TestFunction {
     double of_others = 0.0;
     for (Eigen::Index g = 0; g < point.tangent.globals.size(); ++g)
       if (g != principal_) of_others = std::max(of_others, share(g));
-    return share(principal_) < alone * of_others && touching_segment(point) < 0;
+    const double moves =
+        level::same * point.principal_rate_size / parameter_size(system, point.orbit, static_cast<int>(principal_));
+    return of_others > moves && share(principal_) < alone * of_others && touching_segment(point) < 0;
   }
   SpecialPoint classify(const TestedPoint&, bool) const override {
     return {PointType::user, {UserPointKind::extremum}, stop_, what_};

@@ -317,7 +317,9 @@ def read_labels(path):
         columns = {f"PAR({k + 1})": value for k, value in enumerate(par)}
         columns["period"] = par[10] if problem == 2 else par[60] if problem == 180 else 0.0
         columns["U(1)"] = first_state if points == 1 else 0.0
-        found.append(("GH" if kind == -32 else NAMES.get(basic, ""), columns))
+        # AUTO has no label where the first parameter turns along a curve of Hopf points; tchat says EX, kind 9.
+        is_extremum = abs(basic) == 4 and parameters >= 100 and par[parameters - 4] == 9
+        found.append(("GH" if kind == -32 else "" if is_extremum else NAMES.get(basic, ""), columns))
     return found
 
 
