@@ -376,7 +376,12 @@ std::optional<SpecialPointSearch::Cut> SpecialPointSearch::first_in(const PathPo
   }
   if (!branch_point) return std::nullopt;
   branch_point->put_zero(trial);
-  return Cut{{trial, branch_point->length(), evaluate_again(trial)}, vanishing_at(*branch_point), std::nullopt};
+  const PointData there = evaluate_again(trial);
+  std::vector<std::size_t> group = vanishing_at(*branch_point);
+  std::erase_if(group, [&](std::size_t test) {
+    return test != branch_point->test() && !tests_[test]->is_genuine(tested(trial, there));
+  });
+  return Cut{{trial, branch_point->length(), there}, group, std::nullopt};
 }
 
 /// At the point that would be labelled as its zero, no trial point beside it: where orbits depend on the parameter

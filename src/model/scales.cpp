@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "base/levels.hpp"
 #include "linear/dense_matrix.hpp"
 
 namespace tchat {
@@ -95,8 +94,6 @@ Eigen::VectorXd balancing_sizes(Eigen::MatrixXd a) {
       if (row > 0.0 && column > 0.0) sizes(i) *= std::sqrt(row / column);
     }
   if (n == 0 || are_usual(sizes) || !sizes.allFinite()) return Eigen::VectorXd::Ones(n);
-  // Where an entry is rounding of zero.
-  if (sizes.minCoeff() < level::negligible * sizes.maxCoeff()) return Eigen::VectorXd::Ones(n);
   Eigen::VectorXd sorted = sizes;
   std::sort(sorted.begin(), sorted.end());
   return sizes / sorted((n - 1) / 2);
