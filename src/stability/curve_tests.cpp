@@ -195,6 +195,7 @@ class TurningTest final : public TestFunction {
   TestValue evaluate(const TestedPoint& point) const override {
     return TestValue::of(point.tangent.globals(principal_), level::converged * point.principal_rate_size);
   }
+  bool is_of_tangent() const override { return true; }
   std::string reason_to_vanish(const TestedPoint&) const override { return "ICP(1) stays the same along the curve"; }
   /// At a cusp, and where a curve turns back into itself, all parameters turn; where a section becomes tangent only the
   /// cut does.

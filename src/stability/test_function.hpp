@@ -144,6 +144,8 @@ class TestFunction {
   virtual std::string objection(const TestedPoint&) const { return ""; }
   /// True when Newton's matrix is singular at the zeros, which are then located from both sides.
   virtual bool singular_at_zero() const { return false; }
+  /// A part of the tangent, which may turn at a branch point where a curve turns back into itself.
+  virtual bool is_of_tangent() const { return false; }
   /// True when the value is a sign alone: what is looked for is where it jumps.
   virtual bool is_switch() const { return false; }
   /// True when a zero is told of, but neither located nor labelled: the equations are singular there.
