@@ -19,6 +19,7 @@ struct PointData {
   FloquetMultipliers multipliers;
   std::vector<double> transversalities;  ///< h_x f / (|h_x| |f|) at the end of each segment
   double singular_distance = 1.0;        ///< as in TestedPoint
+  double principal_rate_size = 1.0;      ///< as there
   double estimated_error = 0.0;          ///< of the states between mesh points, relative
   std::vector<EventCourse> courses;      ///< of the monitored event functions
   std::vector<TestValue> tests;          ///< one for each test function

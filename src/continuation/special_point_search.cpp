@@ -135,7 +135,7 @@ TestedPoint SpecialPointSearch::tested(const PathPoint& at, const PointData& dat
           data.singular_distance,
           follower_.condition(),
           follower_.principal_direction(at),
-          follower_.principal_rate_size(at),
+          data.principal_rate_size,
           is_one_parameter_family_,
           data.courses};
 }
@@ -181,6 +181,7 @@ void SpecialPointSearch::evaluate(PathPoint& at, PointData& data) {
   for (int s = 0; s < system_.segments(); ++s)
     data.transversalities.push_back(crossing_at_end(system_, at.orbit, s).transversality());
   data.singular_distance = signed_distance(at);
+  data.principal_rate_size = follower_.principal_rate_size(at);
   data.estimated_error = estimated_error(system_.system(), system_.signature(), at.orbit, follower_.condensed().rule());
   if (data.multipliers.is_flow_lost && !(data.estimated_error <= coarse_mesh)) {
     data.multipliers.is_flow_lost = false;
