@@ -287,13 +287,6 @@ void add_further_contacts(TestList& tests, const GrazingOrbitSystem& system, con
         tests.push_back(std::make_unique<ContactTest>(system, s, other, settings.stop_at_grazing));
 }
 
-std::unique_ptr<TestFunction> turn(const GrazingOrbitSystem& system, const RunSettings& settings) {
-  const std::vector<int>& free = system.free_parameters();
-  const int first = free_problem_parameters(settings).front();
-  return std::make_unique<GrazingTurnTest>(std::find(free.begin(), free.end(), first) - free.begin(),
-                                           system.system().parameter_name(first), settings.detect_folds < 0);
-}
-
 /// xi_n by GCIPSI, a*, branch points, multipliers +1 and -1 of the smooth orbit, impact velocities of the other
 /// segments, further contacts, turns of the curve in its first parameter.
 TestList grazing_tests(const GrazingOrbitSystem& system, const RunSettings& settings) {
@@ -305,7 +298,7 @@ TestList grazing_tests(const GrazingOrbitSystem& system, const RunSettings& sett
   for (const int n : has_impact ? settings.test_functions : std::vector<int>{})
     tests.push_back(std::make_unique<XiTest>(system, settings.grazing_jump, n));
   tests.push_back(std::make_unique<AccelerationTest>(system, settings.grazing_jump));
-  if (settings.detect_folds != 0) tests.push_back(turn(system, settings));
+  add_turning_points(tests, system, settings, PointType::fold);
   const int kind = std::abs(settings.detect_bifurcations);
   if (kind == 2 || kind == 3) tests.push_back(std::make_unique<BranchPointTest>(settings.detect_bifurcations < 0));
   if (kind == 2 || kind == 4)

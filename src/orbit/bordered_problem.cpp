@@ -137,7 +137,7 @@ double BorderedProblem::signed_distance(const OrbitVector& row) {
   const double sign = tangent_sign(row);
   double distance = condensed_.signed_distance();
   if (condition_) distance *= along_.norm();
-  for (int k = 0; k < conditions(); ++k) distance /= size_on(null_vectors_, condition_->gradient(k));
+  for (int k = 0; k < conditions(); ++k) distance /= size_on_null_vectors(condition_->gradient(k));
   return sign * distance;
 }
 
@@ -148,70 +148,26 @@ BorderedProblem::Numbers BorderedProblem::on_null_vectors(const OrbitVector& row
 }
 
 /// The largest length that row . Z may have with these sizes of its terms; not zero.
-double BorderedProblem::size_on(const std::vector<OrbitVector>& z, const OrbitVector& row) {
+double BorderedProblem::size_on_null_vectors(const OrbitVector& row) const {
   double sum = std::numeric_limits<double>::min();
-  for (const OrbitVector& v : z) sum += dot_of_sizes(row, v) * dot_of_sizes(row, v);
+  for (const OrbitVector& z : null_vectors_) sum += dot_of_sizes(row, z) * dot_of_sizes(row, z);
   return std::sqrt(sum);
 }
 
-namespace {
-
-/// v . w, each unknown relative to its size.
-double relative_dot(const DefiningSystem& system, const Orbit& x, const OrbitVector& v, const OrbitVector& w) {
-  double sum = v.states.cwiseProduct(w.states).sum();
-  const double time = time_size(system, x);
-  for (int s = 0; s < x.shape.segments; ++s)
-    sum += v.durations(s) * w.durations(s) / std::pow(time + std::abs(x.duration(s)), 2);
-  for (int g = 0; g < system.free_count(); ++g)
-    sum += v.globals(g) * w.globals(g) / std::pow(parameter_size(system, x, g), 2);
-  return sum;
-}
-
-void add_multiple(double factor, const OrbitVector& v, OrbitVector& sum) {
-  sum.states += factor * v.states;
-  sum.durations += factor * v.durations;
-  sum.globals += factor * v.globals;
-}
-
-/// Makes the vectors orthonormal in relative_dot() by Gram and Schmidt, twice: these times the result.
-Eigen::MatrixXd orthonormalise(const DefiningSystem& system, const Orbit& x, std::vector<OrbitVector>& vectors) {
-  const auto count = static_cast<Eigen::Index>(vectors.size());
-  Eigen::MatrixXd c = Eigen::MatrixXd::Identity(count, count);
-  for (Eigen::Index j = 0; j < count; ++j) {
-    OrbitVector& v = vectors[static_cast<std::size_t>(j)];
-    for (int pass = 0; pass < 2; ++pass) {
-      for (Eigen::Index i = 0; i < j; ++i) {
-        const OrbitVector& before = vectors[static_cast<std::size_t>(i)];
-        const double share = relative_dot(system, x, before, v);
-        add_multiple(-share, before, v);
-        c.col(j) -= share * c.col(i);
-      }
-      const double length = std::sqrt(relative_dot(system, x, v, v));
-      v.scale(1.0 / length);
-      c.col(j) /= length;
-    }
-  }
-  return c;
-}
-
-}  // namespace
-
-CondensedSystem::Singularity BorderedProblem::singularity(const OrbitVector& row, const Orbit& x) {
+CondensedSystem::Singularity BorderedProblem::singularity(const OrbitVector& row) {
   CondensedSystem::Singularity result = condensed_.singularity();
   if (outcome_ != Linearization::ready || !condition_) return result;
   if (!null_vectors_known_) find_null_vectors();
-  std::vector<OrbitVector> z = null_vectors_;
-  const Eigen::MatrixXd combinations = orthonormalise(condensed_.system(), x, z);
   Eigen::MatrixXd rows(conditions() + 1, conditions() + 1);
-  rows.row(0) = on_null_vectors(row).transpose() * combinations / size_on(z, row);
+  rows.row(0) = on_null_vectors(row).transpose() / size_on_null_vectors(row);
   for (int k = 0; k < conditions(); ++k)
-    rows.row(1 + k) = slopes_.row(k) * combinations / size_on(z, condition_->gradient(k));
+    rows.row(1 + k) = slopes_.row(k) / size_on_null_vectors(condition_->gradient(k));
   if (!rows.allFinite()) return result;
   const SingularVectors vectors = singular_vectors(rows);
   const double reciprocal = vectors.sizes.minCoeff() / vectors.sizes.maxCoeff();
   if (!(reciprocal < result.reciprocal_condition)) return result;
   OrbitVector direction = condensed_.make_vector();
-  combine_null_vectors(combinations * vectors.right.rightCols<1>(), direction);
+  combine_null_vectors(vectors.right.rightCols<1>(), direction);
   return {reciprocal, direction};
 }
 

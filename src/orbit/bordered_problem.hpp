@@ -88,9 +88,8 @@ class BorderedProblem {
   /// where they leave more than the tangent. 0 where the last linearisation was singular, NaN where it failed
   /// otherwise. Allocates.
   double signed_distance(const OrbitVector& row);
-  /// CondensedSystem::singularity() at x with row and gradients in place of the closing rows of a condition, each
-  /// unknown relative to its size.
-  CondensedSystem::Singularity singularity(const OrbitVector& row, const Orbit& x);
+  /// CondensedSystem::singularity() with row and gradients in place of the closing rows of a condition.
+  CondensedSystem::Singularity singularity(const OrbitVector& row);
   /// What stands for this row of a branch, on v, of orbits of this shape.
   static double at_ends(const OrbitShape& shape, const OrbitVector& row, const OrbitVector& v);
   /// Largest residual, the condition's included.
@@ -104,7 +103,7 @@ class BorderedProblem {
 
   void close(const OrbitShape& shape, const OrbitVector& row);
   Numbers on_null_vectors(const OrbitVector& row) const;
-  static double size_on(const std::vector<OrbitVector>& z, const OrbitVector& row);
+  double size_on_null_vectors(const OrbitVector& row) const;
   void find_null_vectors();
   void measure_null_vectors();
   bool put_on_branch(const OrbitVector& row, double target, OrbitVector& dx);

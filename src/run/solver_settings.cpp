@@ -87,13 +87,13 @@ void add_user_values(TestList& tests, const HybridSystem& system, const RunSetti
           std::make_unique<UserValueTest>(u.parameter, u.value, u.stop, parameter_name(system, settings, u.parameter)));
 }
 
-void add_turning_points(TestList& tests, const DefiningSystem& system, const RunSettings& settings) {
+void add_turning_points(TestList& tests, const DefiningSystem& system, const RunSettings& settings, PointType type) {
   const std::vector<int> free = free_problem_parameters(settings);
   const int principal = settings.free_parameters.front();
   const auto at = std::find(free.begin(), free.end(), principal);
   if (settings.detect_folds == 0 || free.size() < 2 || at == free.end()) return;
-  tests.push_back(
-      turning_test(at - free.begin(), parameter_name(system.system(), settings, principal), settings.detect_folds < 0));
+  tests.push_back(turning_test(at - free.begin(), parameter_name(system.system(), settings, principal), type,
+                               settings.detect_folds < 0));
 }
 
 void add_bifurcations(TestList& tests, const DefiningSystem& system, const RunSettings& settings) {

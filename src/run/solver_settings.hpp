@@ -35,8 +35,10 @@ void add_impact_velocities(TestList& tests, const DefiningSystem& system, const 
 /// `except` (from 0; -1: of all), whose contact is kept.
 void add_section_tangencies(TestList& tests, const DefiningSystem& system, const RunSettings& settings, int except);
 
-/// ILP, on a curve in two or more parameters: extrema of ICP(1), where that is a parameter of the problem.
-void add_turning_points(TestList& tests, const DefiningSystem& system, const RunSettings& settings);
+/// ILP, on a curve in two or more parameters: turns in ICP(1), where that is a parameter of the problem. `type`: as of
+/// turning_test().
+void add_turning_points(TestList& tests, const DefiningSystem& system, const RunSettings& settings,
+                        PointType type = PointType::user);
 
 /// ILP and ISP: |ISP| = 2 all, 3 branch points only, 4 all but branch points; negative: stop at the first.
 void add_bifurcations(TestList& tests, const DefiningSystem& system, const RunSettings& settings);

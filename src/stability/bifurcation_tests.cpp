@@ -154,31 +154,23 @@ std::string MultiplierPairTest::name() const { return fmt::format("a pair of mul
 
 TestValue MultiplierPairTest::evaluate(const TestedPoint& point) const {
   if (!trusted(point.multipliers) || !point.multipliers.determined()) return TestValue::undefined();
-  // The largest two that are not in `done` yet, and so on.
-  double last = INFINITY, value = INFINITY, sign = 1.0;
-  int order = 0;
+  const auto list = point.multipliers.nontrivial();
   const auto beyond = [&](const std::complex<double>& mu) {
     const bool is_real = std::abs(mu.imag()) <= complex_level * std::abs(mu);
     return is_real && mu.real() * target_ > 0.0 ? mu.real() * target_ - 1.0 : -INFINITY;
   };
-  while (true) {
-    double next = -INFINITY;
-    int equal = 0;
-    for (const auto& mu : point.multipliers.nontrivial())
-      if (const double x = beyond(mu); x < last) {
-        equal = x > next ? 1 : x == next ? equal + 1 : equal;
-        next = std::max(next, x);
-      }
-    if (next == -INFINITY) break;
-    for (; equal > 0; --equal)
-      if (++order % 2 == 0) {
-        value = std::min(value, std::abs(next));
-        sign = next > 0.0 ? -sign : sign;
-      }
-    last = next;
+  double value = INFINITY, sign = 1.0;
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const double x = beyond(list[k]);
+    const auto comes_before = [&](std::size_t l) { return beyond(list[l]) > x || (beyond(list[l]) == x && l < k); };
+    std::size_t before = 0;
+    for (std::size_t l = 0; l < list.size(); ++l) before += comes_before(l) ? 1 : 0;
+    if (x == -INFINITY || before % 2 == 0) continue;
+    value = std::min(value, std::abs(x));
+    sign = x > 0.0 ? -sign : sign;
   }
   // Pairs that are complex have not gone through it.
-  if (order < 2) value = multiplier_distance(point.multipliers, target_);
+  if (value == INFINITY) value = multiplier_distance(point.multipliers, target_);
   if (!std::isfinite(value)) return TestValue::undefined();
   return TestValue::of(sign * value, multiplier_accuracy(point.multipliers));
 }

@@ -189,43 +189,49 @@ class ExtremumTest final : public TestFunction {
 
 class TurningTest final : public TestFunction {
  public:
-  TurningTest(Eigen::Index principal, std::string what, bool stop)
-      : principal_(principal), what_(std::move(what)), stop_(stop) {}
-  std::string name() const override { return "extremum"; }
+  TurningTest(Eigen::Index principal, std::string parameter, PointType type, bool stop)
+      : principal_(principal), parameter_(std::move(parameter)), type_(type), stop_(stop) {}
+  std::string name() const override { return "turn in " + parameter_; }
   TestValue evaluate(const TestedPoint& point) const override {
     return TestValue::of(point.tangent.globals(principal_), level::converged * point.principal_rate_size);
   }
   bool is_of_tangent() const override { return true; }
-  std::string reason_to_vanish(const TestedPoint&) const override { return "ICP(1) stays the same along the curve"; }
-  /// At a cusp, and where a curve turns back into itself, all parameters turn; where a section becomes tangent only the
-  /// cut does.
+  std::string reason_to_vanish(const TestedPoint&) const override { return parameter_ + " stays the same"; }
+  /// Where grazing curves cross, the turn of one of them is that of the branch point. At a cusp, and where a curve
+  /// turns back into itself, all parameters turn; where a section becomes tangent only the cut does.
   bool is_genuine(const TestedPoint& point) const override {
-    constexpr double alone = 0.01;
-    const DefiningSystem& system = point.condensed.system();
-    const auto share = [&](Eigen::Index g) {
-      return std::abs(point.tangent.globals(g)) / parameter_size(system, point.orbit, static_cast<int>(g));
-    };
-    double of_others = 0.0;
-    for (Eigen::Index g = 0; g < point.tangent.globals.size(); ++g)
-      if (g != principal_) of_others = std::max(of_others, share(g));
-    const double moves =
-        level::same * point.principal_rate_size / parameter_size(system, point.orbit, static_cast<int>(principal_));
-    return of_others > moves && share(principal_) < alone * of_others && touching_segment(point) < 0;
+    if (type_ == PointType::fold) return std::abs(point.singular_distance) > level::located;
+    return turns_alone(point) && touching_segment(point) < 0;
   }
   SpecialPoint classify(const TestedPoint&, bool) const override {
-    return {PointType::user, {UserPointKind::extremum}, stop_, what_};
+    if (type_ == PointType::fold) return {type_, {}, stop_, "the grazing curve turns in " + parameter_};
+    return {type_, {UserPointKind::extremum}, stop_, "extremum of " + parameter_ + " along the curve"};
   }
 
  private:
+  bool turns_alone(const TestedPoint& point) const {
+    constexpr double alone = 0.01;
+    const auto size = [&](Eigen::Index g) {
+      return parameter_size(point.condensed.system(), point.orbit, static_cast<int>(g));
+    };
+    const auto share = [&](Eigen::Index g) { return std::abs(point.tangent.globals(g)) / size(g); };
+    double of_others = 0.0;
+    for (Eigen::Index g = 0; g < point.tangent.globals.size(); ++g)
+      if (g != principal_) of_others = std::max(of_others, share(g));
+    const double moving = level::same * point.principal_rate_size / size(principal_);
+    return of_others > moving && share(principal_) < alone * of_others;
+  }
+
   Eigen::Index principal_;
-  std::string what_;
+  std::string parameter_;
+  PointType type_;
   bool stop_;
 };
 
 }  // namespace
 
-std::unique_ptr<TestFunction> turning_test(Eigen::Index principal, const std::string& name, bool stop) {
-  return std::make_unique<TurningTest>(principal, "extremum of " + name + " along the curve", stop);
+std::unique_ptr<TestFunction> turning_test(Eigen::Index principal, const std::string& name, PointType type, bool stop) {
+  return std::make_unique<TurningTest>(principal, name, type, stop);
 }
 
 std::unique_ptr<TestFunction> cusp_test(const CriticalMultiplier& fold) { return std::make_unique<CuspTest>(fold); }

@@ -23,8 +23,9 @@ TestList torus_curve_tests(const CriticalPair& pair);
 /// On a curve of extrema: the monitor is stationary in the last parameter too. `names`: of all its parameters.
 std::unique_ptr<TestFunction> extremum_test(const StationaryMonitor& condition, std::string names);
 
-/// ICP(1), the global unknown `principal` (from 0) that is called `name`, has an extremum along the curve.
-std::unique_ptr<TestFunction> turning_test(Eigen::Index principal, const std::string& name, bool stop);
+/// The curve turns in the free parameter `principal` (from 0) that is called `name`. `type`: fold on grazing curves,
+/// where orbits in contact are found up to there and no farther; user on others, on which that is EX.
+std::unique_ptr<TestFunction> turning_test(Eigen::Index principal, const std::string& name, PointType type, bool stop);
 
 // Points of codimension two on curves of folds, period doublings and torus bifurcations of periodic orbits: another
 // multiplier, or pair, is critical too, or the coefficient of the normal form is zero (Kuznetsov, ch. 9).

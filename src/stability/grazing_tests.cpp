@@ -360,18 +360,6 @@ SpecialPoint AccelerationTest::classify(const TestedPoint&, bool) const {
           "codimension two: a* = 0, h is no longer least at the contact"};
 }
 
-TestValue GrazingTurnTest::evaluate(const TestedPoint& point) const {
-  return TestValue::of(point.tangent.globals(parameter_), level::converged * point.principal_rate_size);
-}
-
-bool GrazingTurnTest::is_genuine(const TestedPoint& point) const {
-  return std::abs(point.singular_distance) > level::located;
-}
-
-SpecialPoint GrazingTurnTest::classify(const TestedPoint&, bool) const {
-  return {PointType::fold, {}, stop_, fmt::format("the grazing curve turns in {}", parameter_name_)};
-}
-
 TestValue SmoothMultiplierTest::evaluate(const TestedPoint& point) const { return multiplier_product(point, target_); }
 
 bool SmoothMultiplierTest::is_genuine(const TestedPoint& point) const { return is_multiplier_at(point, target_); }

@@ -161,25 +161,6 @@ class AccelerationTest final : public TestFunction {
   int jump_;
 };
 
-/// LP: the curve turns in its first parameter, where its tangent has no part of it. Up to there, and no farther, are
-/// orbits in grazing contact at values of that parameter. Where curves cross the turn of one of them is that of the
-/// branch point.
-class GrazingTurnTest final : public TestFunction {
- public:
-  /// `parameter`: its place among the free ones, from 0; `name`: for messages.
-  GrazingTurnTest(Eigen::Index parameter, std::string name, bool stop)
-      : parameter_(parameter), parameter_name_(std::move(name)), stop_(stop) {}
-  std::string name() const override { return "turn in " + parameter_name_; }
-  TestValue evaluate(const TestedPoint& point) const override;
-  bool is_genuine(const TestedPoint& point) const override;
-  SpecialPoint classify(const TestedPoint& point, bool rising) const override;
-
- private:
-  Eigen::Index parameter_;
-  std::string parameter_name_;
-  bool stop_;
-};
-
 /// Multiplier +1 (grazing-fold) or -1 (grazing-flip) of the smooth return map: the product of all such functions,
 /// without a pole where another segment's impact velocity vanishes.
 class SmoothMultiplierTest final : public TestFunction {
