@@ -511,7 +511,7 @@ CondensedSystem::Singularity PathFollower::singularity(const PathPoint& point) {
   problem_.recall(point.memory);
   problem_.set_reference(point.orbit);
   if (problem_.linearize(point.orbit, point.dual, newton_.linearized()) == Linearization::not_finite) return {1.0, {}};
-  return problem_.singularity(point.dual, point.orbit);
+  return problem_.singularity(point.dual);
 }
 
 }  // namespace tchat
