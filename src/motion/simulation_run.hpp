@@ -32,7 +32,7 @@ class ChatteringDetector {
     double remaining = 0.0;    ///< time from the last event to the limit
     double ratio = 0.0;        ///< rho
     int pattern = 1;           ///< q
-    double uncertainty = 0.0;  ///< of the limit's time, by extrapolation and by what is known of the durations
+    double uncertainty = 0.0;  ///< error bound of the limit's time: of the extrapolation and of the durations
   };
 
   /// The next segment: what ended it, how long it lasted, and how well that is known.

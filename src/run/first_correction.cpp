@@ -236,7 +236,7 @@ std::string moved_beside(const Orbit& start, const Orbit& found, const DefiningS
   std::string text;
   const int unfolding = system.unfolding(start) ? system.layout().unfolding(system.segments()) : 0;
   for (const int k : system.free_parameters()) {
-    if (k == unfolding) continue;  // zero but for rounding, whose size is not known
+    if (k == unfolding) continue;  // zero up to rounding, whose size is unknown
     const double asked = start.par(k - 1);
     const double value = found.par(k - 1);
     if (k == principal || !has_moved_far(system.system(), k, asked, value)) continue;

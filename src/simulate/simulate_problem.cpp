@@ -332,20 +332,19 @@ std::string obstacle(const HybridSystem& system, const SimulationResult& result,
   return "";
 }
 
-/// "" when the samples have a mesh on which the orbit can be continued; otherwise why not.
-std::string unresolved(const HybridSystem& system, const OrbitSamples& samples) {
-  constexpr double largest_error = 1e-2;
+/// "" when the samples have a mesh on which the orbit can be continued with this ERRMAX; otherwise why not.
+std::string unresolved(const HybridSystem& system, const OrbitSamples& samples, double error_bound) {
   const std::optional<FastPart> fast = fastest_part(samples, system.dimension());
   if (fast)
     return fmt::format(
         "segment {} is so fast where {} = {:.4g} that the times of its points have too few digits; divide it by an "
-        "event "
-        "that changes nothing, as at {} = {:.4g}",
+        "event that changes nothing, as at {} = {:.4g}",
         fast->segment, system.state_name(fast->state), fast->value, system.state_name(fast->state), fast->before);
-  if (samples.error <= largest_error) return "";
+  if (error_bound == 0.0 || samples.error <= error_bound) return "";
   return fmt::format(
-      "NTST = {} intervals leave an error of {:.1e}; divide its sharp segments by events that change nothing",
-      samples.intervals, samples.error);
+      "NTST = {} intervals leave an error of {:.1e}, more than ERRMAX = {:g}; divide its sharp segments by events that "
+      "change nothing",
+      samples.intervals, samples.error, error_bound);
 }
 
 }  // namespace
@@ -479,7 +478,7 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
   if (loaded.library->has_added_section()) orbit = without_cuts(std::move(orbit), own_events(system));
   const RunSettings base = constants.is_given() ? constants.settings : default_orbit_settings(constants.settings);
   const OrbitSamples samples = sample_orbit(system, orbit, start.par, base.mesh_intervals, base.collocation_points);
-  if (const std::string why = unresolved(system, samples); !why.empty()) {
+  if (const std::string why = unresolved(system, samples, base.error_bound); !why.empty()) {
     warnings << fmt::format("tchat: --dat: nothing written, {}\n", why);
     return 1;
   }
