@@ -65,7 +65,8 @@ BranchWriter::BranchWriter(const HybridSystem& system, const CollocationRule& ru
       outputs_(branch_outputs(section_, files, screen, terminal)),
       weights_(state_weights(section_.settings)),
       last_label_(setup.last_label),
-      units_(setup.units) {}
+      units_(setup.units),
+      parameter_sizes_(setup.parameter_sizes) {}
 
 void BranchWriter::begin_section(int branch, double step, std::vector<NewtonIteration> correction) {
   section_.branch = branch;
@@ -168,17 +169,23 @@ void BranchWriter::report_unknown_user_values(const PointLine& line) {
   }
 }
 
-/// Of the parameters. What is too small for the full precision of a double is rounding, and so is what is far below
-/// the accuracy of a value that has been larger on the branch.
+/// Below it a parameter is rounding of zero: what is too small for the full precision of a double, and what is far
+/// below the size of the parameter or the accuracy of a value that has been larger on the branch.
+double BranchWriter::least_value(std::size_t column) const {
+  const int index = section_.columns[column].index;
+  const double size = index <= parameter_sizes_.size() ? parameter_sizes_(index - 1) : 0.0;
+  return std::max({std::numeric_limits<double>::min(), level::negligible * largest_values_[column],
+                   level::rounding_of_sums * size});
+}
+
 std::string BranchWriter::place(const PointLine& line) const {
   std::string text;
   for (std::size_t k = 0; k < section_.columns.size(); ++k) {
     const PointColumn& column = section_.columns[k];
     if (column.kind != PointColumn::Kind::parameter || (k > 0 && !is_parameter(section_.settings, column.index)))
       continue;
-    const double least = std::max(std::numeric_limits<double>::min(), level::negligible * largest_values_[k]);
     text += fmt::format("{}{} = {:.10g}", text.empty() ? "" : ", ", shown_name(column),
-                        std::abs(line.values[k]) < least ? 0.0 : line.values[k]);
+                        std::abs(line.values[k]) < least_value(k) ? 0.0 : line.values[k]);
   }
   return text;
 }

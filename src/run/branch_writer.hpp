@@ -24,7 +24,8 @@ class BranchWriter final : public BranchSink {
     std::vector<int> active_parameters;
     int curve_type = 0;  ///< tens digit of type numbers on two-parameter curves
     int last_label = 0;
-    Eigen::VectorXd units = {};  ///< of the states of points, in those of `system`; none: all are 1
+    Eigen::VectorXd units = {};            ///< of the states of points, in those of `system`; none: all are 1
+    Eigen::VectorXd parameter_sizes = {};  ///< of PAR(1), ..., as far as they are known: HybridSystem::parameter_size()
   };
 
   /// Arguments: see branch_outputs().
@@ -63,6 +64,7 @@ class BranchWriter final : public BranchSink {
   void find_column_values(const BranchPoint& point);
   double column_value(const PointColumn& column, const BranchPoint& point) const;
   std::string place(const PointLine& line) const;
+  double least_value(std::size_t column) const;
   void write(const BranchPoint& point);
   bool shown_stable(const BranchPoint& point);
   void report_unknown_user_values(const PointLine& line);
@@ -80,6 +82,7 @@ class BranchWriter final : public BranchSink {
   int last_label_;
   Eigen::VectorXd units_;
   bool last_stable_ = false;
+  Eigen::VectorXd parameter_sizes_;
   std::vector<double> largest_values_;  // of each column, so far
   std::set<int> reported_user_functions_;
 };

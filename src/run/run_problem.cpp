@@ -121,6 +121,12 @@ struct Reports {
   }
 };
 
+/// Of PAR(1), ..., where nothing but their sizes is known.
+Eigen::VectorXd parameter_sizes(const HybridSystem& system) {
+  return Eigen::VectorXd::NullaryExpr(
+      system.parameters(), [&](Eigen::Index k) { return system.parameter_size(static_cast<int>(k) + 1, 0.0); });
+}
+
 struct ReadSettings {
   RunSettings in_file;
   RunSettings used;  ///< with the changes of the command line
@@ -325,7 +331,8 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
                    << direction_text(setup, selected, continuation.principal_name);
   const int last_label = request.append ? std::max(files.last_label(), 0) : selected.last_label;
   BranchWriter writer(system, setup.follower->condensed().rule(),
-                      {constants, active_parameters(constants), setup.type->facts().curve, last_label, own.units},
+                      {constants, active_parameters(constants), setup.type->facts().curve, last_label, own.units,
+                       parameter_sizes(own.system())},
                       files, reports.table, reports.table != nullptr ? progress : nullptr);
 
   const NextCommand next = [&](const BranchWriter::Labelled& label) {
