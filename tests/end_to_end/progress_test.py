@@ -13,7 +13,7 @@ import sys
 import tempfile
 
 ARGUMENTS = ["run", "linosc", "-c", "nonimpacting_omega", "-d", "nonimpacting", "-o", "long",
-             "NTST=400", "NMX=3000", "NPR=0", "DS=1e-4", "DSMAX=1e-4", "UZR={}", "GCIPSI=[]", "IAD=0"]
+             "NTST=400", "NMX=100000", "NPR=0", "DS=1e-4", "DSMAX=1e-4", "UZR={}", "GCIPSI=[]", "IAD=0"]
 
 
 def terminal():
