@@ -10,6 +10,7 @@
 
 #include "base/levels.hpp"
 #include "linear/dense_matrix.hpp"
+#include "model/events.hpp"
 #include "model/scales.hpp"
 #include "orbit/equilibrium_system.hpp"
 #include "stability/bifurcation_tests.hpp"

@@ -8,12 +8,11 @@
 
 namespace tchat {
 
-// How the next point of a branch is predicted, before Newton's method corrects it.
-//
+class DefiningSystem;
+struct PathPoint;
+
 // A predictor has no memory of its own: what it needs of earlier points is in the trail of the point that it starts
 // from, so that trial steps leave no trace. A new one is a class with its own file and a line in make_predictor().
-
-struct PathPoint;
 
 struct Prediction {
   double change = 0.0;  ///< from the prediction along the tangent, measured as OrbitChange::larger()

@@ -10,6 +10,7 @@
 
 #include "base/levels.hpp"
 #include "base/messages.hpp"
+#include "files/solution_file_reader.hpp"
 #include "model/events.hpp"
 #include "model/scales.hpp"
 #include "motion/hybrid_simulation.hpp"

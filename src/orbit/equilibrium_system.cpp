@@ -355,12 +355,12 @@ std::optional<NearbyEquilibrium> find_equilibrium(const HybridSystem& system, in
 }
 
 std::optional<NearbyFold> find_fold(const HybridSystem& system, int field, const Eigen::VectorXd& near,
-                                    Eigen::VectorXd par, int active, const Eigen::VectorXd& sizes) {
+                                    const Eigen::VectorXd& start, int active, const Eigen::VectorXd& sizes) {
   constexpr int most_steps = 30;
   constexpr double converged = level::differences;  // f's double zero leaves half of the digits
   const Eigen::Index n = near.size();
   const int parameters[] = {active};
-  Eigen::VectorXd x = near, f(n), fv(n), fp(n), fvp(n), rows, of_parameter;
+  Eigen::VectorXd x = near, par = start, f(n), fv(n), fp(n), fvp(n), rows, of_parameter;
   Eigen::MatrixXd fx(n, n), fvx(n, n);
   double curvature = 0.0;  // at the start
   for (int step = 0; step < most_steps; ++step) {

@@ -184,6 +184,6 @@ struct NearbyFold {
 /// derivatives are w^T (d f_x) v, states and f in units of `sizes` (n) and of the terms of f_x there. Nothing where
 /// that does not converge, or where w^T f_p = 0 or w^T f_xx v v has been lost on the way.
 std::optional<NearbyFold> find_fold(const HybridSystem& system, int field, const Eigen::VectorXd& near,
-                                    Eigen::VectorXd par, int active, const Eigen::VectorXd& sizes);
+                                    const Eigen::VectorXd& start, int active, const Eigen::VectorXd& sizes);
 
 }  // namespace tchat

@@ -24,7 +24,7 @@ std::vector<const Monitor*> with_objective(const Monitor& objective, const std::
 }  // namespace
 
 ReducedGradient::ReducedGradient(const DefiningSystem& system, const OrbitShape& shape, const Monitor& objective,
-                                 std::vector<const Monitor*> held)
+                                 const std::vector<const Monitor*>& held)
     : system_(system),
       rule_(shape.collocation),
       monitors_(with_objective(objective, held)),

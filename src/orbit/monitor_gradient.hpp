@@ -32,7 +32,7 @@ class ReducedGradient {
  public:
   /// The arguments outlive this object. Of the system's free parameters, the last held.size() depend on the others.
   ReducedGradient(const DefiningSystem& system, const OrbitShape& shape, const Monitor& objective,
-                  std::vector<const Monitor*> held);
+                  const std::vector<const Monitor*>& held);
 
   /// How many independent parameters: the first ones of the system.
   int count() const { return static_cast<int>(values_.size()); }

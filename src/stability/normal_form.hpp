@@ -10,6 +10,7 @@
 #include "orbit/orbit.hpp"
 #include "settings/point_type.hpp"
 #include "stability/return_map_forms.hpp"
+#include "stability/test_function.hpp"
 
 namespace tchat {
 
