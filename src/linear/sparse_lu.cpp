@@ -28,8 +28,8 @@ struct Equilibrated {
   Eigen::VectorXd row_size, next_row_size;  // while it is made
   Eigen::VectorXd v, left, right;
 
-  /// Matrices of one pattern all.
-  void equilibrate(const SparseMatrix& of);
+  /// Matrices of one pattern all. `units`: of the unknowns, from which the scales of columns start; none: all 1.
+  void equilibrate(const SparseMatrix& of, std::span<const double> units);
   /// By power iteration.
   double largest_singular_value(int iterations);
 
@@ -39,11 +39,16 @@ struct Equilibrated {
 
 /// Each sweep goes through the matrix once: a column is divided by the sizes of its rows, then by its own, and counts
 /// for the rows of the next sweep at once.
-void Equilibrated::equilibrate(const SparseMatrix& of) {
+void Equilibrated::equilibrate(const SparseMatrix& of, std::span<const double> units) {
   constexpr int sweeps = 4;
   take(of);
   row_scale.setOnes(of.rows());
   column_scale.setOnes(of.cols());
+  if (!units.empty()) {
+    column_scale = Eigen::Map<const Eigen::VectorXd>(units.data(), std::ssize(units));
+    for (int c = 0; c < matrix.cols(); ++c)
+      for (SparseMatrix::InnerIterator entry(matrix, c); entry; ++entry) entry.valueRef() *= column_scale(c);
+  }
   row_size.setZero(of.rows());
   next_row_size.resize(of.rows());
   const int* const row = matrix.innerIndexPtr();
@@ -290,11 +295,11 @@ SparseLu::Determinant SparseLu::determinant() const {
   return std::isfinite(result.log2_size) ? result : Determinant{};
 }
 
-double SparseLu::singular_distance() const {
+double SparseLu::singular_distance(std::span<const double> units) const {
   if (!state_->is_factored()) return 0.0;
   constexpr int iterations = 4;
   Equilibrated& scaled = state_->scaled;
-  scaled.equilibrate(state_->matrix);
+  scaled.equilibrate(state_->matrix, units);
   Eigen::VectorXd& v = scaled.v;
   Eigen::VectorXd& left = scaled.left;
   Eigen::VectorXd& right = scaled.right;
@@ -317,12 +322,12 @@ double SparseLu::singular_distance() const {
   return largest > 0.0 ? 1.0 / (std::sqrt(growth) * largest) : 0.0;
 }
 
-SparseLu::Condition SparseLu::condition() const {
+SparseLu::Condition SparseLu::condition(std::span<const double> units) const {
   // Equilibrate a copy, then find the smallest singular value by inverse iteration on (D_r A D_c)^T (D_r A D_c) with a
   // factorisation of the scaled copy.
   const int n = size();
   Equilibrated equilibrated;
-  equilibrated.equilibrate(state_->matrix);
+  equilibrated.equilibrate(state_->matrix, units);
   const SparseMatrix& scaled = equilibrated.matrix;
 
   Condition result;

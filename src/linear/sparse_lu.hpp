@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace tchat {
@@ -43,8 +44,8 @@ class SparseLu {
 
   /// Estimate of the smallest singular value as a share of the largest, of the matrix scaled to rows and columns of
   /// unit size: the relative distance to a singular matrix. Near one it is as exact as rounding allows. From the
-  /// factors; 0 without them.
-  double singular_distance() const;
+  /// factors; 0 without them. `units`: in which the unknowns are of size 1, size() or none.
+  double singular_distance(std::span<const double> units = {}) const;
 
   /// Estimate of the reciprocal 2-norm condition of the matrix scaled to rows and columns of unit size, with the
   /// right singular direction (in the unscaled unknowns) that goes with the smallest singular value. Allocates.
@@ -52,7 +53,7 @@ class SparseLu {
     double reciprocal = 0.0;
     std::vector<double> null_direction;
   };
-  Condition condition() const;
+  Condition condition(std::span<const double> units = {}) const;
 
  private:
   struct State;

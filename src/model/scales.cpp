@@ -147,7 +147,7 @@ bool is_ordinary(double size) {
 double default_weight(double size) { return is_ordinary(size) ? 1.0 : 1.0 / (size * size); }
 
 bool are_usual(const Eigen::VectorXd& sizes) {
-  constexpr double usual = 64.0;
+  constexpr double usual = 2.0;
   return std::all_of(sizes.begin(), sizes.end(), [](double size) {
     return size < std::numeric_limits<double>::min() || (size <= usual && size >= 1.0 / usual);
   });

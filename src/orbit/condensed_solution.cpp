@@ -149,7 +149,7 @@ CondensedSystem::Determinant CondensedSystem::determinant() const {
 }
 
 CondensedSystem::Singularity CondensedSystem::singularity() const {
-  const SparseLu::Condition condition = lu_.condition();
+  const SparseLu::Condition condition = lu_.condition(end_units_);
   Singularity result{condition.reciprocal, make_vector()};
   if (condition.null_direction.empty()) return result;
   const double* direction = condition.null_direction.data();

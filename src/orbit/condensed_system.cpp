@@ -233,12 +233,11 @@ Linearization CondensedSystem::linearize(const Orbit& x, std::span<const EndVect
   return factorize(closing) ? Linearization::ready : Linearization::singular;
 }
 
-/// Durations and free parameters of no ordinary size are taken in units of that where a length of vectors is asked for.
+/// Durations and free parameters are taken in units of their sizes where a length of vectors is asked for.
 void CondensedSystem::choose_units(const Orbit& x) {
-  const auto unit = [](double size) { return is_ordinary(size) ? 1.0 : size; };
   for (int s = 0; s < shape_.segments; ++s)
-    end_units_[index(duration_unknown(s))] = unit(time_size(system_, x) + std::abs(x.duration(s)));
-  for (int g = 0; g < globals_; ++g) end_units_[index(global_unknown(g))] = unit(parameter_size(system_, x, g));
+    end_units_[index(duration_unknown(s))] = time_size(system_, x) + std::abs(x.duration(s));
+  for (int g = 0; g < globals_; ++g) end_units_[index(global_unknown(g))] = parameter_size(system_, x, g);
 }
 
 Linearization CondensedSystem::condense(const Orbit& x, std::span<const OrbitVector> general, OrbitResidual& residual) {

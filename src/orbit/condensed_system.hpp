@@ -142,7 +142,7 @@ class CondensedSystem {
   /// size, to a singular one: it has the zeros of the determinant, but its size depends neither on the mesh nor on how
   /// much the flow contracts. 0 when singular. Allocates.
   double signed_distance() const {
-    return lu_.determinant().sign * elimination_.determinant_sign() * lu_.singular_distance();
+    return lu_.determinant().sign * elimination_.determinant_sign() * lu_.singular_distance(end_units_);
   }
 
   /// Scaled reciprocal condition of the factored matrix and its null direction, of which only the ends of segments,

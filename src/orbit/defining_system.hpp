@@ -133,11 +133,10 @@ inline double parameter_size(const DefiningSystem& system, const Orbit& x, int g
   return system.system().parameter_size(k, x.par(k - 1));
 }
 
-/// Durations of x are small against this and their own: 1 where one return of the orbits takes a time of ordinary size,
-/// else that time.
+/// Durations of x are small against this and their own: the time that one return of the orbits takes, 1 if none.
 inline double time_size(const DefiningSystem& system, const Orbit& x) {
   const double turn = x.par.durations(x.shape.segments).cwiseAbs().sum() / system.orbits();
-  return is_ordinary(turn) ? 1.0 : turn;
+  return turn > 0.0 ? turn : 1.0;
 }
 
 // The rows that tie the ends of segments together, as a problem type gives them to the condensed system.

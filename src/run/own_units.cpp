@@ -35,9 +35,7 @@ Eigen::VectorXd parameter_sizes(const RunSettings& settings, const SelectedStart
     double weight = 1.0;
     for (const IndexedValue& given : settings.parameter_weights)
       if (given.index == k + 1) weight = given.value;
-    const double step = std::min(1.0, longest / (weight > 0.0 ? std::sqrt(weight) : 1.0));
-    const double size = std::max(std::abs(par(k)), step);
-    sizes(k) = is_ordinary(size) ? 1.0 : size;
+    sizes(k) = std::max(std::abs(par(k)), longest / (weight > 0.0 ? std::sqrt(weight) : 1.0));
   }
   return sizes;
 }
