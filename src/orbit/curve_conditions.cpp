@@ -25,10 +25,15 @@ SparseLu make_bordered(const CondensedReturnMap& map) {
   return {map.size() + 1, rows, columns};
 }
 
-void normalise(std::vector<double>& v) {
-  const double norm = std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0));
-  if (norm > 0.0)
-    for (double& entry : v) entry /= norm;
+/// A border of unit length in units of `sizes`, along a null vector whose entries times `sizes` have no unit.
+void follow(const std::vector<double>& null_vector, const std::vector<double>& sizes, std::vector<double>& border) {
+  double squares = 0.0;
+  for (std::size_t i = 0; i < border.size(); ++i) {
+    border[i] = null_vector[i] * sizes[i] * sizes[i];
+    squares += std::pow(null_vector[i] * sizes[i], 2);
+  }
+  if (squares > 0.0)
+    for (double& entry : border) entry /= std::sqrt(squares);
 }
 
 }  // namespace
@@ -39,23 +44,41 @@ CriticalMultiplier::CriticalMultiplier(const DefiningSystem& system, const Orbit
       lu_(make_bordered(map_)),
       column_(static_cast<std::size_t>(map_.size())),
       row_(column_.size()),
+      row_sizes_(column_.size(), 1.0),
+      column_sizes_(column_.size(), 1.0),
       small_v_(column_.size() + 1),
       small_w_(column_.size() + 1),
       rhs_(column_.size() + 1, 0.0),
       v_(shape, system.free_count()),
       gradient_(shape, system.free_count()) {
-  begin_border();
   rhs_.back() = 1.0;
+}
+
+/// States are of unit size (StateSizes), and so are the rows of S but for those of events, which have another unit;
+/// the sigma_s are times.
+void CriticalMultiplier::find_sizes(const CondensedSystem& condensed, const Orbit& x) {
+  const int n = condensed.shape().dimension, block = 2 * n + 1;
+  const double time = time_size(condensed.system(), x);
+  for (int i = 0; i < map_.size(); ++i)
+    if (i % block == n) row_sizes_[static_cast<std::size_t>(i)] = 0.0;
+  for (std::size_t k = 0; k < map_.rows().size(); ++k) {
+    double& size = row_sizes_[static_cast<std::size_t>(map_.rows()[k])];
+    if (map_.rows()[k] % block == n) size = std::max(size, std::abs(values_[k]));
+  }
+  for (int i = 0; i < map_.size(); ++i) {
+    double& row = row_sizes_[static_cast<std::size_t>(i)];
+    if (!(row > 0.0)) row = 1.0;
+    column_sizes_[static_cast<std::size_t>(i)] = i % block == 2 * n ? 1.0 / time : 1.0;
+  }
 }
 
 /// Any border that leaves the matrix regular.
 void CriticalMultiplier::begin_border() {
   for (std::size_t i = 0; i < column_.size(); ++i) {
-    column_[i] = std::sin(1.0 + 0.7 * static_cast<double>(i));
-    row_[i] = std::cos(0.3 + 0.9 * static_cast<double>(i));
+    small_w_[i] = std::sin(1.0 + 0.7 * static_cast<double>(i)) / row_sizes_[i];
+    small_v_[i] = std::cos(0.3 + 0.9 * static_cast<double>(i)) / column_sizes_[i];
   }
-  normalise(column_);
-  normalise(row_);
+  follow_null_vectors();
 }
 
 void CriticalMultiplier::remember(std::vector<double>& memory) const {
@@ -67,14 +90,15 @@ void CriticalMultiplier::remember(std::vector<double>& memory) const {
 
 void CriticalMultiplier::recall(const std::vector<double>& memory) {
   started_ = !memory.empty();
-  if (!started_) return begin_border();
+  if (!started_) return;
   const auto middle = memory.begin() + static_cast<std::ptrdiff_t>(column_.size());
   column_.assign(memory.begin(), middle);
   row_.assign(middle, memory.end());
 }
 
-bool CriticalMultiplier::solve_bordered(const CondensedSystem& condensed, const Orbit& x) {
-  map_.values(condensed, x, multiplier_, values_);
+/// S stands in values_, and the border of the last time may stand behind it.
+bool CriticalMultiplier::solve_bordered() {
+  values_.resize(map_.rows().size());
   values_.insert(values_.end(), column_.begin(), column_.end());
   values_.insert(values_.end(), row_.begin(), row_.end());
   if (!lu_.factorize(values_)) return false;
@@ -85,10 +109,8 @@ bool CriticalMultiplier::solve_bordered(const CondensedSystem& condensed, const 
 }
 
 void CriticalMultiplier::follow_null_vectors() {
-  std::copy_n(small_w_.begin(), column_.size(), column_.begin());
-  std::copy_n(small_v_.begin(), row_.size(), row_.begin());
-  normalise(column_);
-  normalise(row_);
+  follow(small_w_, row_sizes_, column_);
+  follow(small_v_, column_sizes_, row_);
 }
 
 bool CriticalMultiplier::put_critical_vectors(CriticalVectors& vectors) const {
@@ -99,9 +121,12 @@ bool CriticalMultiplier::put_critical_vectors(CriticalVectors& vectors) const {
 }
 
 bool CriticalMultiplier::evaluate(CondensedSystem& condensed, const Orbit& x) {
+  map_.values(condensed, x, multiplier_, values_);
+  find_sizes(condensed, x);
+  if (!started_) begin_border();
   // The border follows the null vectors; the first time it takes some rounds to find them.
   for (int round = started_ ? 3 : 0; round < 4; ++round) {
-    if (!solve_bordered(condensed, x)) return false;
+    if (!solve_bordered()) return false;
     follow_null_vectors();
   }
   started_ = true;

@@ -61,7 +61,8 @@ class CriticalMultiplier final : public RealMultiplierCondition {
   void solve_beside(const double* column, double* z) { lu_.solve(column, z); }
 
  private:
-  bool solve_bordered(const CondensedSystem& condensed, const Orbit& x);
+  void find_sizes(const CondensedSystem& condensed, const Orbit& x);
+  bool solve_bordered();
   void begin_border();
   void follow_null_vectors();
 
@@ -71,6 +72,7 @@ class CriticalMultiplier final : public RealMultiplierCondition {
   std::vector<double> values_;
   std::vector<double> column_;   // b
   std::vector<double> row_;      // c
+  std::vector<double> row_sizes_, column_sizes_;
   std::vector<double> small_v_;  // v and G
   std::vector<double> small_w_;  // w and G
   std::vector<double> rhs_;
