@@ -70,8 +70,8 @@ class CriticalMultiplier final : public RealMultiplierCondition {
   CondensedReturnMap map_;
   SparseLu lu_;  // of the bordered S
   std::vector<double> values_;
-  std::vector<double> column_;   // b
-  std::vector<double> row_;      // c
+  std::vector<double> column_;  // b
+  std::vector<double> row_;     // c
   std::vector<double> row_sizes_, column_sizes_;
   std::vector<double> small_v_;  // v and G
   std::vector<double> small_w_;  // w and G

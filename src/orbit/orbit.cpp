@@ -118,13 +118,18 @@ double event_scale(const HybridSystem& system, const Orbit& x, int event) {
   return largest;
 }
 
-Eigen::VectorXd state_sizes(const HybridSystem& system, const Signature& signature, const Orbit& x, bool balances) {
+Eigen::VectorXd state_sizes(const HybridSystem& system, const Signature& signature, const Orbit& x) {
+  return known_sizes(system, signature, x, x.states).sizes();
+}
+
+StateSizes known_sizes(const HybridSystem& system, const Signature& signature, const Orbit& x,
+                       const Eigen::MatrixXd& states) {
   constexpr int parts = 16;
   const double* const par = x.par.data();
-  StateSizes sizes(x.states);
+  StateSizes sizes(states);
   if (x.shape.stored_nodes() == 1) {
     sizes.add_at_rest(system, signature.front().field, x.start(0), par);
-    return sizes.sizes(balances);
+    return sizes;
   }
   for (int s = 0; s < x.shape.segments; ++s) {
     const IndexVector& v = signature[static_cast<std::size_t>(s) % signature.size()];
@@ -134,7 +139,7 @@ Eigen::VectorXd state_sizes(const HybridSystem& system, const Signature& signatu
     sizes.add(system, FunctionKind::jump, v.jump, x.end(s), par);
     if (v.event != no_function) sizes.add(system, FunctionKind::event, v.event, x.end(s), par);
   }
-  return sizes.sizes(balances);
+  return sizes;
 }
 
 Eigen::VectorXd state_uncertainty(const Orbit& x) {

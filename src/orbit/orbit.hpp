@@ -12,6 +12,7 @@
 #include "base/levels.hpp"
 #include "model/hybrid_system.hpp"
 #include "model/parameter_vector.hpp"
+#include "model/scales.hpp"
 
 namespace tchat {
 
@@ -149,9 +150,11 @@ inline constexpr double orbit_accuracy = level::orbit;
 double event_scale(const HybridSystem& system, const Orbit& x, int event);
 
 /// The sizes of its states (StateSizes, by the functions of the segments of this signature, which the orbit may run
-/// through more than once, and `balances` as there).
-Eigen::VectorXd state_sizes(const HybridSystem& system, const Signature& signature, const Orbit& x,
-                            bool balances = true);
+/// through more than once).
+Eigen::VectorXd state_sizes(const HybridSystem& system, const Signature& signature, const Orbit& x);
+/// What the functions say of those of `states`, of an orbit near x, n to a column.
+StateSizes known_sizes(const HybridSystem& system, const Signature& signature, const Orbit& x,
+                       const Eigen::MatrixXd& states);
 
 /// How well states of the orbit are known, n entries: orbit_accuracy times the largest |x_k| over the orbit, and not
 /// less than rounding of the largest of all states, for a state that is zero throughout shows nothing but rounding.

@@ -62,14 +62,21 @@ void forget_amplitudes(const Orbit& x, Eigen::VectorXd& sizes) {
     if (sizes(k) <= largest) sizes(k) = 1.0;
 }
 
-}  // namespace
+/// The weight that a state has in the norm says in which unit its changes are looked at.
+void take_sizes_from_weights(const RunSettings& settings, const std::vector<bool>& known, Eigen::VectorXd& sizes) {
+  for (const IndexedValue& given : settings.state_weights)
+    if (given.value > 0.0 && !known[static_cast<std::size_t>(given.index - 1)])
+      sizes(given.index - 1) = 1.0 / std::sqrt(given.value);
+}
 
-OwnUnits in_own_units(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start) {
-  Eigen::VectorXd sizes = state_sizes(system, settings.signature(), start.start.orbit, !has_zero_eigenvalue(start));
-  if (has_shrunk(start)) forget_amplitudes(start.start.orbit, sizes);
+OwnUnits in_units_of_sizes(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start,
+                           const Eigen::VectorXd& sizes) {
   const Eigen::VectorXd units = units_of(sizes);
-  OwnUnits own{
-      std::make_unique<ScaledProblem>(system, Scales{units, parameter_sizes(settings, start)}), start, settings, {}};
+  OwnUnits own{std::make_unique<ScaledProblem>(system, Scales{units, parameter_sizes(settings, start)}),
+               start,
+               settings,
+               {},
+               sizes};
   own.settings.state_weights = own_weights(settings, sizes, units);
   if (units == Eigen::VectorXd::Ones(units.size())) return own;
   own.units = units;
@@ -77,6 +84,54 @@ OwnUnits in_own_units(const HybridSystem& system, const RunSettings& settings, c
   if (own.start.start.direction) divide(own.start.start.direction->states, units);
   if (own.start.second) divide(own.start.second->states, units);
   return own;
+}
+
+/// The largest change along the tangent of what has a size, as a share of that; `moves`: of states in units of sizes.
+double fastest(const DefiningSystem& system, const PathPoint& point, const Eigen::VectorXd& moves,
+               const std::vector<bool>& known) {
+  double result = 0.0;
+  for (Eigen::Index k = 0; k < moves.size(); ++k)
+    if (known[static_cast<std::size_t>(k)]) result = std::max(result, moves(k));
+  for (int g = 0; g < system.free_count(); ++g)
+    result = std::max(result, std::abs(point.tangent.globals(g)) / parameter_size(system, point.orbit, g));
+  const double time = time_size(system, point.orbit);
+  return std::max(result, point.tangent.durations.cwiseAbs().maxCoeff() / time);
+}
+
+}  // namespace
+
+OwnUnits in_own_units(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start) {
+  const StateSizes of_orbit = known_sizes(system, settings.signature(), start.start.orbit, start.start.orbit.states);
+  Eigen::VectorXd sizes = of_orbit.sizes(!has_zero_eigenvalue(start));
+  take_sizes_from_weights(settings, of_orbit.known(), sizes);
+  if (has_shrunk(start)) forget_amplitudes(start.start.orbit, sizes);
+  return in_units_of_sizes(system, settings, start, sizes);
+}
+
+std::optional<OwnUnits> in_units_along(const HybridSystem& system, const RunSettings& settings,
+                                       const SelectedStart& start, const OwnUnits& own, const DefiningSystem& defining,
+                                       const PathPoint& first) {
+  constexpr double far = 8.0;
+  const Eigen::VectorXd units = units_of_states(own.system());
+  const PathPoint point = in_users_units(first, units);
+  const auto signature = settings.signature();
+  const std::vector<bool> known = known_sizes(system, signature, point.orbit, point.orbit.states).known();
+  const Eigen::VectorXd moves = point.tangent.states.cwiseAbs().rowwise().maxCoeff();
+  const double rate = fastest(defining, first, moves.cwiseQuotient(own.sizes), known);
+  if (!(rate > 0.0) || std::find(known.begin(), known.end(), false) == known.end()) return std::nullopt;
+  const StateSizes along = known_sizes(system, signature, point.orbit,
+                                       point.orbit.states.cwiseAbs() + point.tangent.states.cwiseAbs() / rate);
+  const std::vector<bool> moving = along.known();
+  const Eigen::VectorXd found = along.sizes();
+  Eigen::VectorXd sizes = own.sizes;
+  bool is_other = false;
+  for (Eigen::Index k = 0; k < sizes.size(); ++k) {
+    if (known[static_cast<std::size_t>(k)] || !moving[static_cast<std::size_t>(k)]) continue;
+    is_other = is_other || std::max(found(k) / sizes(k), sizes(k) / found(k)) > far;
+    sizes(k) = found(k);
+  }
+  if (!is_other) return std::nullopt;
+  return in_units_of_sizes(system, settings, start, sizes);
 }
 
 PathPoint in_users_units(const PathPoint& point, const Eigen::VectorXd& units) {

@@ -175,9 +175,14 @@ SelectedStart start_of(const RunRequest& request, const Problem& problem, const 
   return selected;
 }
 
-/// The first point, checked before any file is touched.
-BranchSetup first_branch(const OwnUnits& own, const Reports& reports) {
+/// The first point, checked before any file is touched. `own` may become other units, which its tangent shows.
+BranchSetup first_branch(const Problem& problem, const SelectedStart& selected, OwnUnits& own, const Reports& reports) {
   BranchSetup setup = set_up_branch(own.system(), own.settings, own.start);
+  if (auto along =
+          in_units_along(problem.system(), problem.settings, selected, own, *setup.defining, setup.start.point)) {
+    setup = set_up_branch(along->system(), along->settings, along->start);
+    own = std::move(*along);
+  }
   reports.warn_of(setup.start.note);
   const RunSettings& written = setup.constants ? *setup.constants : setup.settings;
   reports.warn_of(unwatched_events(own.system(), written, setup.start.point.orbit));
@@ -318,8 +323,8 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
   refuse_to_replace_start(request, selected, output);
   RunFiles files(output, request.append ? RunFiles::Mode::append : RunFiles::Mode::replace);
   files.check_writable();
-  const OwnUnits own = in_own_units(system, problem.settings, selected);
-  const BranchSetup setup = first_branch(own, reports);
+  OwnUnits own = in_own_units(system, problem.settings, selected);
+  const BranchSetup setup = first_branch(problem, selected, own, reports);
   const ContinuationSettings continuation = continuation_of(request, setup, own, problem, interrupted);
 
   RunSettings constants = setup.constants.value_or(setup.settings);
