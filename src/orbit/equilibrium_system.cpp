@@ -61,23 +61,28 @@ std::string EquilibriumSystem::coupling_failure(int s, const Orbit& x) const {
 
 namespace {
 
-/// [f_x f_p; t^T] with rows divided by |r| + (1 + |x| + |p|) |dr/ds|, as in singular_distance().
+/// [f_x f_p; t^T] with rows divided by |r| + (1 + |x| + |p|) |dr/ds|, p and t in units of the parameter's size.
 Eigen::MatrixXd bordered_by_tangent(const DefiningSystem& system, const Orbit& x, const OrbitVector& tangent) {
   const int n = system.dimension();
   const HybridSystem& problem = system.system();
   const int field = system.signature().front().field;
   const std::vector<int>& free = system.free_parameters();
   const double* state = x.end(0);
-  Eigen::VectorXd t(n + 1);
-  t << tangent.states.col(0), tangent.globals(0);
+  const double unit = parameter_size(system, x, 0);
+  Eigen::VectorXd t(n + 1), along(n + 1);
+  t << tangent.states.col(0), tangent.globals(0) / unit;
   t.normalize();
+  along << t.head(n), unit * t(n);
   Eigen::VectorXd f(n);
   Eigen::MatrixXd rows(n, n + 1);
   Eigen::MatrixXd slopes(n, n + 1);  // d rows / ds
   problem.first(FunctionKind::field, field, state, x.par.data(), free, f.data(), rows.data(), rows.col(n).data());
-  problem.second(FunctionKind::field, field, state, x.par.data(), free, t.data(), f.data(), slopes.data(),
+  problem.second(FunctionKind::field, field, state, x.par.data(), free, along.data(), f.data(), slopes.data(),
                  slopes.col(n).data());
-  const double size = 1.0 + Eigen::Map<const Eigen::VectorXd>(state, n).norm() + std::abs(x.par(free.front() - 1));
+  rows.col(n) *= unit;
+  slopes.col(n) *= unit;
+  const double size =
+      1.0 + Eigen::Map<const Eigen::VectorXd>(state, n).norm() + std::abs(x.par(free.front() - 1)) / unit;
   Eigen::MatrixXd matrix(n + 1, n + 1);
   matrix << rows, t.transpose();
   for (int a = 0; a < n; ++a)
@@ -102,7 +107,7 @@ bool EquilibriumSystem::find_crossing_branch(const Orbit& x, const OrbitVector& 
   const Eigen::VectorXd v = eigenvector(matrix.transpose() * matrix, 0.0).real().normalized();
   direction.set_zero();
   direction.states = v.head(n).replicate(1, direction.states.cols());
-  direction.globals(0) = v(n);
+  direction.globals(0) = v(n) * parameter_size(*this, x, 0);
   return true;
 }
 
