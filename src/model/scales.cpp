@@ -51,7 +51,7 @@ void StateSizes::add_at_rest(const HybridSystem& system, int field, const double
   }
 }
 
-std::vector<bool> StateSizes::known() const {
+std::vector<bool> StateSizes::known(const std::vector<bool>& sure) const {
   constexpr double small = 1e-9, least_share = 1e-7;
   const Eigen::Index n = largest_.size();
   const auto is_number = [&](Eigen::Index i) {
@@ -64,11 +64,12 @@ std::vector<bool> StateSizes::known() const {
     const double of_others = shares_.col(i).sum() - shares_(i, i) + in_events_(i);
     if (is_number(i) && of_others > 0.0) largest = std::max(largest, largest_(i));
   }
-  std::vector<bool> has_size(static_cast<std::size_t>(n));
+  const bool is_sure = !sure.empty();
+  std::vector<bool> has_size = is_sure ? sure : std::vector<bool>(static_cast<std::size_t>(n));
   const auto known = [&](Eigen::Index i) { return static_cast<bool>(has_size[static_cast<std::size_t>(i)]); };
   for (Eigen::Index i = 0; i < n; ++i)
-    has_size[static_cast<std::size_t>(i)] =
-        is_number(i) && (largest_(i) > small * largest || in_events_(i) > least_share);
+    if (is_number(i) && ((!is_sure && largest_(i) > small * largest) || in_events_(i) > least_share))
+      has_size[static_cast<std::size_t>(i)] = true;
   for (bool is_new = true; is_new;) {
     is_new = false;
     for (Eigen::Index i = 0; i < n; ++i)
@@ -147,7 +148,7 @@ bool is_ordinary(double size) {
 double default_weight(double size) { return is_ordinary(size) ? 1.0 : 1.0 / (size * size); }
 
 bool are_usual(const Eigen::VectorXd& sizes) {
-  constexpr double usual = 2.0;
+  constexpr double usual = 64.0;
   return std::all_of(sizes.begin(), sizes.end(), [](double size) {
     return size < std::numeric_limits<double>::min() || (size <= usual && size >= 1.0 / usual);
   });

@@ -35,8 +35,9 @@ class StateSizes {
   /// `balances`: else states of which nothing else is known have the size 1, for entries of f_x may be rounding of
   /// zero.
   Eigen::VectorXd sizes(bool balances = true) const;
-  /// Of each state: has it a size?
-  std::vector<bool> known() const;
+  /// Of each state: has it a size? `sure`: those that have one, so that others need to be a visible part of what they
+  /// do, or of an event; none: all that are not far smaller than the largest.
+  std::vector<bool> known(const std::vector<bool>& sure = {}) const;
 
  private:
   struct Terms {

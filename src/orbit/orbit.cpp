@@ -119,15 +119,15 @@ double event_scale(const HybridSystem& system, const Orbit& x, int event) {
 }
 
 Eigen::VectorXd state_sizes(const HybridSystem& system, const Signature& signature, const Orbit& x) {
-  return known_sizes(system, signature, x, x.states).sizes();
+  return known_sizes(system, signature, x).sizes();
 }
 
 StateSizes known_sizes(const HybridSystem& system, const Signature& signature, const Orbit& x,
-                       const Eigen::MatrixXd& states) {
+                       const Eigen::MatrixXd* change) {
   constexpr int parts = 16;
   const double* const par = x.par.data();
-  StateSizes sizes(states);
-  if (x.shape.stored_nodes() == 1) {
+  StateSizes sizes(change == nullptr ? x.states : Eigen::MatrixXd(x.states.cwiseAbs() + change->cwiseAbs()));
+  if (x.shape.stored_nodes() == 1 && change == nullptr) {
     sizes.add_at_rest(system, signature.front().field, x.start(0), par);
     return sizes;
   }

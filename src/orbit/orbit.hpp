@@ -152,9 +152,9 @@ double event_scale(const HybridSystem& system, const Orbit& x, int event);
 /// The sizes of its states (StateSizes, by the functions of the segments of this signature, which the orbit may run
 /// through more than once).
 Eigen::VectorXd state_sizes(const HybridSystem& system, const Signature& signature, const Orbit& x);
-/// What the functions say of those of `states`, of an orbit near x, n to a column.
+/// What the functions say of them; of orbits, not at rest, that have this change of the states besides, n to a column.
 StateSizes known_sizes(const HybridSystem& system, const Signature& signature, const Orbit& x,
-                       const Eigen::MatrixXd& states);
+                       const Eigen::MatrixXd* change = nullptr);
 
 /// How well states of the orbit are known, n entries: orbit_accuracy times the largest |x_k| over the orbit, and not
 /// less than rounding of the largest of all states, for a state that is zero throughout shows nothing but rounding.

@@ -101,7 +101,7 @@ double fastest(const DefiningSystem& system, const PathPoint& point, const Eigen
 }  // namespace
 
 OwnUnits in_own_units(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start) {
-  const StateSizes of_orbit = known_sizes(system, settings.signature(), start.start.orbit, start.start.orbit.states);
+  const StateSizes of_orbit = known_sizes(system, settings.signature(), start.start.orbit);
   Eigen::VectorXd sizes = of_orbit.sizes(!has_zero_eigenvalue(start));
   take_sizes_from_weights(settings, of_orbit.known(), sizes);
   if (has_shrunk(start)) forget_amplitudes(start.start.orbit, sizes);
@@ -115,20 +115,20 @@ std::optional<OwnUnits> in_units_along(const HybridSystem& system, const RunSett
   const Eigen::VectorXd units = units_of_states(own.system());
   const PathPoint point = in_users_units(first, units);
   const auto signature = settings.signature();
-  const std::vector<bool> known = known_sizes(system, signature, point.orbit, point.orbit.states).known();
+  const std::vector<bool> known = known_sizes(system, signature, point.orbit).known();
   const Eigen::VectorXd moves = point.tangent.states.cwiseAbs().rowwise().maxCoeff();
   const double rate = fastest(defining, first, moves.cwiseQuotient(own.sizes), known);
   if (!(rate > 0.0) || std::find(known.begin(), known.end(), false) == known.end()) return std::nullopt;
-  const StateSizes along = known_sizes(system, signature, point.orbit,
-                                       point.orbit.states.cwiseAbs() + point.tangent.states.cwiseAbs() / rate);
-  const std::vector<bool> moving = along.known();
-  const Eigen::VectorXd found = along.sizes();
+  const Eigen::MatrixXd change = point.tangent.states / rate;
+  const StateSizes along = known_sizes(system, signature, point.orbit, &change);
+  const std::vector<bool> moving = along.known(known);
   Eigen::VectorXd sizes = own.sizes;
   bool is_other = false;
   for (Eigen::Index k = 0; k < sizes.size(); ++k) {
     if (known[static_cast<std::size_t>(k)] || !moving[static_cast<std::size_t>(k)]) continue;
-    is_other = is_other || std::max(found(k) / sizes(k), sizes(k) / found(k)) > far;
-    sizes(k) = found(k);
+    const double found = point.orbit.states.row(k).cwiseAbs().maxCoeff() + moves(k) / rate;
+    is_other = is_other || std::max(found / sizes(k), sizes(k) / found) > far;
+    sizes(k) = found;
   }
   if (!is_other) return std::nullopt;
   return in_units_of_sizes(system, settings, start, sizes);
