@@ -84,8 +84,8 @@ std::vector<BranchBounds> branch_bounds(const ContinuationSettings& settings) {
   return all;
 }
 
-bool is_beyond(const ContinuationSettings& settings, const BranchBounds& bounds, double value) {
-  const double accuracy = location_accuracy(settings) * (1.0 + std::abs(value));
+bool is_beyond(const ContinuationSettings& settings, const BranchBounds& bounds, double value, double size) {
+  const double accuracy = location_accuracy(settings) * size;
   return value < bounds.least - accuracy || value > bounds.most + accuracy;
 }
 
@@ -367,7 +367,8 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
   double value = 0.0;
   for (const BranchBounds& bounds : bounds_) {
     const double here = bounds.value(here_.orbit, follower_.condensed().rule());
-    if (is_beyond(settings_, bounds, here)) special = {};  // special points outside of the bounds are not wanted
+    const double size = system_.system().parameter_size(bounds.parameter, here);
+    if (is_beyond(settings_, bounds, here, size)) special = {};  // special points outside of the bounds are not wanted
     if (left != nullptr || !(here < bounds.least || here > bounds.most)) continue;
     left = &bounds;
     value = here;

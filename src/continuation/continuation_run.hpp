@@ -58,8 +58,9 @@ struct ContinuationSettings {
 /// All finite bounds: of the principal parameter, the solution measure, then further ones.
 std::vector<BranchBounds> branch_bounds(const ContinuationSettings& settings);
 
-/// Outside of the bounds, and not just by the accuracy of a located point (a user value may be a bound).
-bool is_beyond(const ContinuationSettings& settings, const BranchBounds& bounds, double value);
+/// Outside of the bounds, and not just by the accuracy of a located point (a user value may be a bound). `size`: of the
+/// quantity, HybridSystem::parameter_size().
+bool is_beyond(const ContinuationSettings& settings, const BranchBounds& bounds, double value, double size);
 
 class ContinuationRun {
  public:

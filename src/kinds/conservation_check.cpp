@@ -59,13 +59,16 @@ class Conservation {
 
   LargestChange of_jump(const IndexVector& index, const std::vector<VectorXd>& states) const {
     LargestChange largest;
-    VectorXd after(n_);
+    VectorXd after(n_), gradient(n_);
+    std::vector<double> none;
     for (const VectorXd& near : states) {
       const std::optional<VectorXd> x = on_surface(index.event, in_mode(index.field, near));
       if (!x) continue;
       system_.value(FunctionKind::jump, index.jump, x->data(), par_.data(), after.data());
       const double before = function_.value(x->data(), par_.data());
-      largest.add(function_.value(after.data(), par_.data()) - before, 1.0 + std::abs(before), *x);
+      function_.first(x->data(), par_.data(), gradient.data(), none.data());
+      const double scale = std::abs(before) + gradient.cwiseAbs().dot(x->cwiseAbs());
+      largest.add(function_.value(after.data(), par_.data()) - before, scale > 0.0 ? scale : 1.0, *x);
     }
     return largest;
   }

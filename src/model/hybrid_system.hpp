@@ -78,9 +78,9 @@ class HybridSystem {
   /// What a value 1 of state k, from 1, is in the units of its user.
   double unit_of(int k) const { return scales_ == nullptr ? 1.0 : scales_->units(k - 1); }
   /// Against which a change of parameter k, from 1, is small where it has this value: |value| and the size that the
-  /// parameter is known to have.
+  /// parameter is known to have; 1 if none, or another quantity.
   double parameter_size(int k, double value) const {
-    const bool is_known = scales_ != nullptr && k <= scales_->parameters.size();
+    const bool is_known = scales_ != nullptr && k >= 1 && k <= scales_->parameters.size();
     return (is_known ? scales_->parameters(k - 1) : 1.0) + std::abs(value);
   }
 

@@ -61,13 +61,13 @@ void refuse_to_replace_start(const RunRequest& request, const SelectedStart& sta
 
 /// A start beyond the bounds leaves nothing to compute. A label may lie there, where an earlier run ended: its branch
 /// of one point says so.
-void refuse_start_outside(const Orbit& start, const CollocationRule& rule, const ContinuationSettings& settings,
-                          const std::string& source) {
+void refuse_start_outside(const DefiningSystem& system, const Orbit& start, const CollocationRule& rule,
+                          const ContinuationSettings& settings, const std::string& source) {
   for (const BranchBounds& bounds : branch_bounds(settings)) {
     if (bounds.parameter >= start.par.layout().first_monitor(start.shape.segments))
       continue;  // its value comes with the first point's multipliers
     const double value = bounds.value(start, rule);
-    if (!is_beyond(settings, bounds, value)) continue;
+    if (!is_beyond(settings, bounds, value, system.system().parameter_size(bounds.parameter, value))) continue;
     throw UserError(
         fmt::format("the start from {} is outside of the bounds: {} is {:.10g}, and {} allow {:.10g} to {:.10g}; "
                     "widen them, or use another start",
@@ -204,7 +204,8 @@ ContinuationSettings continuation_of(const RunRequest& request, const BranchSetu
   continuation.label_start = selected.label_start;
   continuation.interrupted = interrupted;
   if (!selected.from_solution || selected.parameters_changed)
-    refuse_start_outside(setup.start.point.orbit, setup.follower->condensed().rule(), continuation, selected.source);
+    refuse_start_outside(*setup.defining, setup.start.point.orbit, setup.follower->condensed().rule(), continuation,
+                         selected.source);
   return continuation;
 }
 
