@@ -232,6 +232,8 @@ SpecialPoint ContinuationRun::advance() {
     return {};
   }
   if (is_fold(special.type)) turned_at_ = parameter_at(next_.point);
+  if (special.type == PointType::doubled_fold_end)
+    put_end_of_doubled_folds(follower_, system_, here_, next_.ds, next_.point.orbit);
   return shrunk_orbit(special, through_point);
 }
 

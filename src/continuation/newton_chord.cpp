@@ -16,6 +16,7 @@ constexpr double as_good_as_new = level::converged;
 /// Residuals below this times 1 + max |u| are rounding.
 constexpr double rounding_residual = 200 * std::numeric_limits<double>::epsilon();
 /// A correction larger than this multiple of a residual at rounding level says nothing: the matrix is nearly singular.
+/// The second one may still be what the first has left.
 constexpr double magnified = 1e6;
 
 NewtonStatus failure(Linearization outcome) {
@@ -111,7 +112,8 @@ NewtonResult NewtonChord::correct(Orbit& x, const OrbitVector& row, double chang
     if (iteration == 1) first_change = larger;
     const bool rounding = is_rounding(result.residual, x);
     const bool diverges = iteration > 1 && larger > divergence_factor * first_change;
-    if (rounding && (diverges || larger > magnified * rounding_residual)) {
+    const bool settles = iteration == 2 && larger < 0.5 * first_change;
+    if (rounding && (diverges || (!settles && larger > magnified * rounding_residual))) {
       advance(x, -1.0, dx_, free_parameters);
       result.status = NewtonStatus::converged;
       return result;

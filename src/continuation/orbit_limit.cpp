@@ -5,6 +5,7 @@
 #include <span>
 
 #include "base/levels.hpp"
+#include "stability/curve_tests.hpp"
 
 namespace tchat {
 
@@ -63,6 +64,23 @@ void put_limits(PathFollower& follower, const DefiningSystem& system, const Path
 }
 
 }  // namespace
+
+void put_end_of_doubled_folds(PathFollower& follower, const DefiningSystem& system, const PathPoint& from, double ds,
+                              Orbit& x) {
+  constexpr double share = 0.3;
+  PathPoint near = from;
+  if (!follower.step(from, share * ds, near).converged()) return;
+  const CollocationRule& rule = follower.condensed().rule();
+  Orbit change = near.orbit;
+  change.states = near.tangent.states;
+  const Eigen::VectorXd rate = differences_of_halves(change, system.segments(), rule);
+  const double rest = -differences_of_halves(near.orbit, system.segments(), rule).dot(rate) / rate.squaredNorm();
+  if (!std::isfinite(rest)) return;
+  for (std::size_t g = 0; g < system.free_parameters().size(); ++g) {
+    const int k = system.free_parameters()[g];
+    x.par(k - 1) = near.orbit.par(k - 1) + 0.5 * rest * near.tangent.globals(static_cast<Eigen::Index>(g));
+  }
+}
 
 std::optional<PathPoint> smallest_orbit(PathFollower& follower, const DefiningSystem& system, const PathPoint& from,
                                         const OrbitTrend& trend) {

@@ -1,4 +1,4 @@
-/// Where a branch of orbits ends that shrink to a point.
+/// Where a branch of orbits ends that shrink to a point, or a curve of doubled orbits whose halves meet.
 #pragma once
 
 #include <optional>
@@ -21,5 +21,12 @@ namespace tchat {
 /// another one afterwards.
 std::optional<PathPoint> smallest_orbit(PathFollower& follower, const DefiningSystem& system, const PathPoint& from,
                                         const OrbitTrend& trend);
+
+/// Where the halves of doubled orbits meet, a curve of their folds meets its mirror image: free parameters are even
+/// functions of the difference d of the halves, p = p_0 + p_2 d^2 + O(d^4), so that p_0 = p - d p' / 2. Newton's method
+/// leads to any point of the curve of doublings there. Gives x, located by a step of the length ds from `from`, the
+/// free parameters of the end. The follower's linearisation is another one afterwards.
+void put_end_of_doubled_folds(PathFollower& follower, const DefiningSystem& system, const PathPoint& from, double ds,
+                              Orbit& x);
 
 }  // namespace tchat

@@ -144,7 +144,7 @@ BranchCurve fold(const PeriodicOrbitSystem& system, const RunSettings&, const Se
   return curve_of(system, std::make_unique<CriticalMultiplier>(system, start.start.orbit.shape, 1),
                   [&system](TestList& tests, const CriticalMultiplier& condition) {
                     add_meetings(tests, system, fold_curve_meetings(system));
-                    tests.push_back(cusp_test(condition));
+                    tests.push_back(cusp_test(condition, system));
                     tests.push_back(double_multiplier_test(PointType::resonance_1, condition));
                   });
 }

@@ -41,12 +41,41 @@ constexpr StrongResonance resonances[] = {{"1:1 resonance", 1.0, PointType::reso
 
 const StrongResonance& double_resonance(const CriticalPair& pair) { return resonances[pair.cosine() > 0.0 ? 0 : 1]; }
 
+/// State a at half the duration of the one segment.
+double halfway(const Orbit& x, const CollocationRule& rule, int a) {
+  const double* const mesh = x.mesh_of(0);
+  const int intervals = x.shape.intervals_of(0), c = x.shape.collocation;
+  const auto j = static_cast<int>(std::upper_bound(mesh, mesh + intervals, 0.5) - mesh) - 1;
+  std::array<double, CollocationRule::most_points + 1> basis{};
+  rule.basis((0.5 - mesh[j]) / (mesh[j + 1] - mesh[j]), basis.data(), nullptr);
+  double value = 0.0;
+  for (int i = 0; i <= c; ++i) value += basis[static_cast<std::size_t>(i)] * x.node(0, j * c + i)[a];
+  return value;
+}
+
+/// May the orbits be doubled ones: is the second half of the signature the first one again, or is there no section?
+bool may_be_doubled(const Signature& signature) {
+  if (signature.size() == 1) return signature.front().event == no_function;
+  const auto half = static_cast<std::ptrdiff_t>(signature.size() / 2);
+  return signature.size() % 2 == 0 && std::equal(signature.begin(), signature.begin() + half, signature.begin() + half);
+}
+
+/// Relative to the largest state.
+double difference_of_halves(const TestedPoint& point, int segments) {
+  const double size = 1.0 + point.orbit.states.cwiseAbs().maxCoeff();
+  return differences_of_halves(point.orbit, segments, point.condensed.rule()).cwiseAbs().maxCoeff() / size;
+}
+
 class CuspTest final : public TestFunction {
  public:
-  explicit CuspTest(const CriticalMultiplier& fold) : fold_(fold) {}
+  CuspTest(const CriticalMultiplier& fold, const DefiningSystem& system)
+      : fold_(fold), segments_(system.segments()), may_be_doubled_(may_be_doubled(system.signature())) {}
   std::string name() const override { return "cusp"; }
-  /// The zero level is relative to the sizes of the two vectors.
-  TestValue evaluate(const TestedPoint&) const override {
+  /// The zero level is relative to the sizes of the two vectors. Where the halves of doubled orbits meet the function
+  /// vanishes with the third power of their difference, and is undefined where that is no more than the zero level.
+  TestValue evaluate(const TestedPoint& point) const override {
+    constexpr double meeting = 0.01;
+    if (may_be_doubled_ && difference_of_halves(point, segments_) < meeting) return TestValue::undefined();
     const OrbitVector& gradient = fold_.gradient(0);
     const OrbitVector& v = fold_.null_vector();
     return TestValue::of(fold_.cusp_function(), orbit_accuracy * std::sqrt(dot(gradient, gradient) * dot(v, v)));
@@ -59,6 +88,8 @@ class CuspTest final : public TestFunction {
 
  private:
   const CriticalMultiplier& fold_;
+  int segments_;
+  bool may_be_doubled_;
 };
 
 /// The condition's function goes through zero with every a_s, which has nothing to do with the multiplier: it is
@@ -234,7 +265,19 @@ std::unique_ptr<TestFunction> turning_test(Eigen::Index principal, const std::st
   return std::make_unique<TurningTest>(principal, name, type, stop);
 }
 
-std::unique_ptr<TestFunction> cusp_test(const CriticalMultiplier& fold) { return std::make_unique<CuspTest>(fold); }
+Eigen::VectorXd differences_of_halves(const Orbit& x, int segments, const CollocationRule& rule) {
+  const int n = x.shape.dimension, half = segments / 2;
+  Eigen::VectorXd differences(n * std::max(half, 1));
+  for (int s = 0; s < half; ++s)
+    for (int a = 0; a < n; ++a) differences(s * n + a) = x.node(s, 0)[a] - x.node(half + s, 0)[a];
+  if (half == 0)
+    for (int a = 0; a < n; ++a) differences(a) = x.node(0, 0)[a] - halfway(x, rule, a);
+  return differences;
+}
+
+std::unique_ptr<TestFunction> cusp_test(const CriticalMultiplier& fold, const DefiningSystem& system) {
+  return std::make_unique<CuspTest>(fold, system);
+}
 
 std::unique_ptr<TestFunction> double_multiplier_test(PointType type, const RealMultiplierCondition& condition) {
   return std::make_unique<DoubleMultiplierTest>(type, condition);
@@ -354,50 +397,20 @@ class HalvesMeetTest final : public TestFunction {
   TestValue evaluate(const TestedPoint& point) const override {
     double sum = 0.0;
     double weight = 1.0;
-    for_differences(point, [&](double difference) { sum += std::cos(weight++) * difference; });
-    return TestValue::of(sum / (1.0 + largest_state(point.orbit)), orbit_accuracy);
+    for (const double difference : differences_of_halves(point.orbit, segments_, point.condensed.rule()))
+      sum += std::cos(weight++) * difference;
+    return TestValue::of(sum / (1.0 + point.orbit.states.cwiseAbs().maxCoeff()), orbit_accuracy);
   }
   bool is_genuine(const TestedPoint& point) const override {
-    double largest = 0.0;
-    for_differences(point, [&](double difference) { largest = std::max(largest, std::abs(difference)); });
-    return largest <= level::visible * (1.0 + largest_state(point.orbit));
+    return difference_of_halves(point, segments_) <= level::visible;
   }
   SpecialPoint classify(const TestedPoint&, bool) const override {
     return {PointType::doubled_fold_end, {}, true, "the halves of the doubled orbit meet: the curve begins there"};
   }
 
  private:
-  static double largest_state(const Orbit& x) { return x.states.cwiseAbs().maxCoeff(); }
-  template <class Work>
-  void for_differences(const TestedPoint& point, const Work& work) const {
-    const Orbit& x = point.orbit;
-    const int half = segments_ / 2;
-    for (int s = 0; s < half; ++s)
-      for (int a = 0; a < x.shape.dimension; ++a) work(x.node(s, 0)[a] - x.node(half + s, 0)[a]);
-    if (half == 0)
-      for (int a = 0; a < x.shape.dimension; ++a) work(x.node(0, 0)[a] - halfway(x, point.condensed.rule(), a));
-  }
-  /// State a at half the duration of the one segment.
-  static double halfway(const Orbit& x, const CollocationRule& rule, int a) {
-    const double* const mesh = x.mesh_of(0);
-    const int intervals = x.shape.intervals_of(0), c = x.shape.collocation;
-    const auto j = static_cast<int>(std::upper_bound(mesh, mesh + intervals, 0.5) - mesh) - 1;
-    std::array<double, CollocationRule::most_points + 1> basis{};
-    rule.basis((0.5 - mesh[j]) / (mesh[j + 1] - mesh[j]), basis.data(), nullptr);
-    double value = 0.0;
-    for (int i = 0; i <= c; ++i) value += basis[static_cast<std::size_t>(i)] * x.node(0, j * c + i)[a];
-    return value;
-  }
-
   int segments_;
 };
-
-/// May the orbits be doubled ones: is the second half of the signature the first one again, or is there no section?
-bool may_be_doubled(const Signature& signature) {
-  if (signature.size() == 1) return signature.front().event == no_function;
-  const auto half = static_cast<std::ptrdiff_t>(signature.size() / 2);
-  return signature.size() % 2 == 0 && std::equal(signature.begin(), signature.begin() + half, signature.begin() + half);
-}
 
 }  // namespace
 

@@ -12,7 +12,10 @@ namespace tchat {
 // functions read the curve's condition, which must outlive them and is evaluated at the tested point.
 
 /// The cusp of a fold curve: the curve's null vector and the gradient of its condition are orthogonal.
-std::unique_ptr<TestFunction> cusp_test(const CriticalMultiplier& fold);
+/// Of the states where the halves of a doubled orbit begin; of one segment in time.
+Eigen::VectorXd differences_of_halves(const Orbit& x, int segments, const CollocationRule& rule);
+
+std::unique_ptr<TestFunction> cusp_test(const CriticalMultiplier& fold, const DefiningSystem& system);
 
 /// The critical multiplier is a double one: 1:1 resonance where it is 1, 1:2 where it is -1, as `type` says.
 std::unique_ptr<TestFunction> double_multiplier_test(PointType type, const RealMultiplierCondition& condition);
