@@ -4,7 +4,6 @@
 #include <cassert>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <numeric>
 
 #include "base/levels.hpp"
@@ -234,10 +233,10 @@ Linearization CondensedSystem::linearize(const Orbit& x, std::span<const EndVect
   return factorize(closing) ? Linearization::ready : Linearization::singular;
 }
 
-/// Where a length of vectors is asked for, free parameters are taken in units of their sizes and durations in that in
-/// which an angular frequency is 1, for states of size 1 have rates of that size.
+/// Where a length of vectors is asked for, free parameters are taken in units of their sizes, and durations of no
+/// ordinary size in that.
 void CondensedSystem::choose_units(const Orbit& x) {
-  const double unit = time_size(system_, x) / (2.0 * std::numbers::pi);
+  const double unit = is_ordinary(time_size(system_, x)) ? 1.0 : time_size(system_, x);
   for (int s = 0; s < shape_.segments; ++s) end_units_[index(duration_unknown(s))] = unit;
   for (int g = 0; g < globals_; ++g) end_units_[index(global_unknown(g))] = parameter_size(system_, x, g);
 }

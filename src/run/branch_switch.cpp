@@ -162,8 +162,18 @@ Bifurcation double_at(PathFollower& follower, const DefiningSystem& defining, co
   return result;
 }
 
+/// v less its part along the tangent of the known branch, and what share of its length that leaves.
+double take_off(const PathPoint& point, OrbitVector& v) {
+  const double before = dot(v, v), along = dot(point.dual, v);
+  v.states -= along * point.tangent.states;
+  v.durations -= along * point.tangent.durations;
+  v.globals -= along * point.tangent.globals;
+  return std::sqrt(dot(v, v) / before);
+}
+
 /// The null vector of the problem bordered by the tangent of the known branch: any right-hand side brings it out of the
-/// nearly singular matrix.
+/// nearly singular matrix. If that was so near to a singular one that another closing row took the place of the
+/// tangent, a null vector of the problem, the solution is across that, and may be the tangent itself.
 Bifurcation branch_at(PathFollower& follower, const PathPoint& point) {
   CondensedSystem& condensed = follower.condensed();
   OrbitVector crossing = condensed.make_vector();
@@ -185,10 +195,12 @@ Bifurcation branch_at(PathFollower& follower, const PathPoint& point) {
   OrbitVector v = condensed.make_vector();
   const std::vector<double> border(static_cast<std::size_t>(condensed.border_rows()), 0.0);
   condensed.solve(residual, border, v);
-  const double along = dot(point.dual, v);
-  v.states -= along * point.tangent.states;
-  v.durations -= along * point.tangent.durations;
-  v.globals -= along * point.tangent.globals;
+  const double of_v = take_off(point, v);
+  if (condensed.closing_rows_gave_way()) {
+    OrbitVector null = condensed.make_vector();
+    condensed.null_vector(null);
+    if (take_off(point, null) > of_v) v = null;
+  }
   orient(condensed.system(), point.orbit, v);
   return {point.orbit, v, point.tangent};
 }

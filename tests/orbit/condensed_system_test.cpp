@@ -205,13 +205,12 @@ TEST_CASE("several closing rows are the ends of null vectors, which are orthonor
   CHECK(condensed.closing_rows_gave_way());
   REQUIRE(general.linearize(x, rows, of_general) == Linearization::ready);
 
-  // In units in which an angular frequency, and each parameter with its 1 + |p|, is 1.
+  // In units of each parameter's 1 + |p|.
   OrbitVector z[2] = {condensed.make_vector(), condensed.make_vector()};
   std::vector<EndVector> of;
   for (int k = 0; k < 2; ++k) {
     condensed.null_vector(z[k], k);
     OrbitVector copy = z[k];
-    copy.durations *= 2.0 * std::acos(-1.0) / x.par.durations(shape.segments).sum();
     for (int g = 0; g < 2; ++g) copy.globals(g) /= 1.0 + std::abs(x.par(g));
     of.push_back(keep_ends(copy, shape));
   }
