@@ -63,23 +63,49 @@ void put_limits(PathFollower& follower, const DefiningSystem& system, const Path
   for (std::size_t i = 0; i < limits.size(); ++i) x.par(system.free_parameters()[i] - 1) = limits[i];
 }
 
+/// The mean of each node's state and of that half a doubled orbit away.
+Eigen::MatrixXd same_in_halves(const Orbit& x, const CollocationRule& rule) {
+  const int m = x.shape.segments, half = m / 2;
+  Eigen::MatrixXd result(x.states.rows(), x.states.cols());
+  for (int s = 0; s < m; ++s)
+    for (int k = 0; k < x.shape.nodes_of(s); ++k) {
+      const double tau = x.tau(s, k), there = half > 0 ? tau : std::fmod(tau + 0.5, 1.0);
+      const int column = x.shape.first_node(s) + k;
+      result.col(column) = 0.5 * (x.states.col(column) + state_at(x, rule, (s + half) % m, there));
+    }
+  return result;
+}
+
+Eigen::VectorXd same_in_halves(const Eigen::VectorXd& durations) {
+  Eigen::VectorXd result = durations;
+  const Eigen::Index m = durations.size(), half = m / 2;
+  for (Eigen::Index s = 0; s < m; ++s) result(s) = 0.5 * (durations(s) + durations((s + half) % m));
+  return result;
+}
+
 }  // namespace
 
 void put_end_of_doubled_folds(PathFollower& follower, const DefiningSystem& system, const PathPoint& from, double ds,
                               Orbit& x) {
-  constexpr double share = 0.3;
-  PathPoint near = from;
-  if (!follower.step(from, share * ds, near).converged()) return;
+  // There d^4 and what rounding / d^2 makes of parameters are about the same.
+  constexpr double best = 0.006, least_share = 0.3;
   const CollocationRule& rule = follower.condensed().rule();
+  const double d = differences_of_halves(from.orbit, system.segments(), rule).norm() /
+                   (1.0 + from.orbit.states.cwiseAbs().maxCoeff());
+  PathPoint near = from;
+  if (!follower.step(from, std::max(least_share, 1.0 - best / d) * ds, near).converged()) return;
   Orbit change = near.orbit;
   change.states = near.tangent.states;
   const Eigen::VectorXd rate = differences_of_halves(change, system.segments(), rule);
   const double rest = -differences_of_halves(near.orbit, system.segments(), rule).dot(rate) / rate.squaredNorm();
   if (!std::isfinite(rest)) return;
-  for (std::size_t g = 0; g < system.free_parameters().size(); ++g) {
-    const int k = system.free_parameters()[g];
-    x.par(k - 1) = near.orbit.par(k - 1) + 0.5 * rest * near.tangent.globals(static_cast<Eigen::Index>(g));
-  }
+  const Eigen::VectorXd durations = same_in_halves(near.orbit.par.durations(system.segments()));
+  const Eigen::VectorXd of_durations = same_in_halves(near.tangent.durations);
+  x = near.orbit;
+  x.states = same_in_halves(near.orbit, rule) + 0.5 * rest * same_in_halves(change, rule);
+  for (int s = 0; s < system.segments(); ++s) x.duration(s) = durations(s) + 0.5 * rest * of_durations(s);
+  for (std::size_t g = 0; g < system.free_parameters().size(); ++g)
+    x.par(system.free_parameters()[g] - 1) += 0.5 * rest * near.tangent.globals(static_cast<Eigen::Index>(g));
 }
 
 std::optional<PathPoint> smallest_orbit(PathFollower& follower, const DefiningSystem& system, const PathPoint& from,

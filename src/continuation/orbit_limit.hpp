@@ -22,10 +22,10 @@ namespace tchat {
 std::optional<PathPoint> smallest_orbit(PathFollower& follower, const DefiningSystem& system, const PathPoint& from,
                                         const OrbitTrend& trend);
 
-/// Where the halves of doubled orbits meet, a curve of their folds meets its mirror image: free parameters are even
-/// functions of the difference d of the halves, p = p_0 + p_2 d^2 + O(d^4), so that p_0 = p - d p' / 2. Newton's method
-/// leads to any point of the curve of doublings there. Gives x, located by a step of the length ds from `from`, the
-/// free parameters of the end. The follower's linearisation is another one afterwards.
+/// Where the halves of doubled orbits meet, a curve of their folds meets its mirror image: all that the halves have in
+/// common, free parameters too, are even functions of their difference d, y = y_0 + y_2 d^2 + O(d^4), so that
+/// y_0 = y - d y' / 2. Newton's method leads to any point of the curve of doublings there. Makes x, located by a step
+/// of the length ds from `from`, the orbit of the end. The follower's linearisation is another one afterwards.
 void put_end_of_doubled_folds(PathFollower& follower, const DefiningSystem& system, const PathPoint& from, double ds,
                               Orbit& x);
 

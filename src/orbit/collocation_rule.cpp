@@ -143,6 +143,22 @@ void CollocationRule::basis(double sigma, double* values, double* slopes) const 
   }
 }
 
+int interval_at(const Orbit& x, int s, double tau) {
+  const double* const mesh = x.mesh_of(s);
+  const int intervals = x.shape.intervals_of(s);
+  const auto right = static_cast<int>(std::upper_bound(mesh, mesh + intervals + 1, tau) - mesh);
+  return std::clamp(right - 1, 0, intervals - 1);
+}
+
+Eigen::VectorXd state_at(const Orbit& x, const CollocationRule& rule, int s, double tau) {
+  const int j = interval_at(x, s, tau);
+  const double* const left = x.mesh_of(s) + j;
+  const int c = x.shape.collocation;
+  Eigen::VectorXd basis(c + 1);
+  rule.basis((tau - left[0]) / (left[1] - left[0]), basis.data(), nullptr);
+  return x.states.middleCols(x.shape.first_node(s) + j * c, c + 1) * basis;
+}
+
 WeightedNorm::WeightedNorm(Eigen::VectorXd state_weights, ParameterVector parameter_weights)
     : state_weights_(std::move(state_weights)), parameter_weights_(std::move(parameter_weights)) {}
 

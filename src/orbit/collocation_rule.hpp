@@ -69,6 +69,12 @@ inline void interpolate(const Orbit& x, const CollocationRule& rule, int s, int 
     for (int a = 0; a < x.shape.dimension; ++a) state[a] += rule.value(g, i) * *node++;
 }
 
+/// The interval of segment s that tau is in.
+int interval_at(const Orbit& x, int s, double tau);
+
+/// The collocation polynomial of segment s (from 0) at tau in [0, 1], n.
+Eigen::VectorXd state_at(const Orbit& x, const CollocationRule& rule, int s, double tau);
+
 // The inner product of pseudo-arclength continuation (5.50),
 //
 //     <a, b> = sum_s integral_0^1 sum_i theta_i a_i b_i dtau + sum_s theta_T a_T b_T + sum_g theta_g a_g b_g,

@@ -32,8 +32,9 @@ void follow(const std::vector<double>& null_vector, const std::vector<double>& s
     border[i] = null_vector[i] * sizes[i] * sizes[i];
     squares += std::pow(null_vector[i] * sizes[i], 2);
   }
-  if (squares > 0.0)
-    for (double& entry : border) entry /= std::sqrt(squares);
+  const double length = std::sqrt(squares);
+  if (length > 0.0)
+    for (double& entry : border) entry /= length;
 }
 
 }  // namespace
@@ -54,8 +55,8 @@ CriticalMultiplier::CriticalMultiplier(const DefiningSystem& system, const Orbit
   rhs_.back() = 1.0;
 }
 
-/// States are of unit size (StateSizes), and so are the rows of S but for those of events, which have another unit;
-/// the sigma_s are times.
+/// Sizes of the rows of S and, inverse, of its unknowns. States and their rows have the size 1 (StateSizes), the row of
+/// an event that of its largest entry, and sigma_s is a time.
 void CriticalMultiplier::find_sizes(const CondensedSystem& condensed, const Orbit& x) {
   const int n = condensed.shape().dimension, block = 2 * n + 1;
   const double time = time_size(condensed.system(), x);

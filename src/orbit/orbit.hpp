@@ -152,7 +152,8 @@ double event_scale(const HybridSystem& system, const Orbit& x, int event);
 /// The sizes of its states (StateSizes, by the functions of the segments of this signature, which the orbit may run
 /// through more than once).
 Eigen::VectorXd state_sizes(const HybridSystem& system, const Signature& signature, const Orbit& x);
-/// What the functions say of them; of orbits, not at rest, that have this change of the states besides, n to a column.
+/// The same before sizes are taken from it: which states have one is known, too. `change`: of the states, n to a
+/// column, added to their sizes, for an orbit near x that is not at rest.
 StateSizes known_sizes(const HybridSystem& system, const Signature& signature, const Orbit& x,
                        const Eigen::MatrixXd* change = nullptr);
 

@@ -19,14 +19,6 @@ namespace {
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-/// The interval of segment s that tau is in.
-int interval_at(const Orbit& x, int s, double tau) {
-  const double* const mesh = x.mesh_of(s);
-  const int intervals = x.shape.intervals_of(s);
-  const auto right = static_cast<int>(std::upper_bound(mesh, mesh + intervals + 1, tau) - mesh);
-  return std::clamp(right - 1, 0, intervals - 1);
-}
-
 /// Density of the old mesh of segment s at tau: intervals per unit of tau.
 double density_at(const Orbit& x, int s, double tau) {
   const double* const left = x.mesh_of(s) + interval_at(x, s, tau);
@@ -215,15 +207,6 @@ Orbit joined_orbit(const Orbit& old, const std::vector<std::vector<OrbitPiece>>&
 Eigen::VectorXd end_of(const OrbitPiece& piece, const Orbit& x) {
   if (piece.constant.size() > 0) return piece.constant;
   return state_at(x, CollocationRule(x.shape.collocation), piece.segment, piece.to);
-}
-
-Eigen::VectorXd state_at(const Orbit& x, const CollocationRule& rule, int s, double tau) {
-  const int j = interval_at(x, s, tau);
-  const double* const left = x.mesh_of(s) + j;
-  const int c = x.shape.collocation;
-  Eigen::VectorXd basis(c + 1);
-  rule.basis((tau - left[0]) / (left[1] - left[0]), basis.data(), nullptr);
-  return x.states.middleCols(x.shape.first_node(s) + j * c, c + 1) * basis;
 }
 
 OrbitStart assemble(const OrbitStart& old, const std::vector<OrbitPiece>& pieces) {

@@ -42,9 +42,6 @@ Orbit joined_orbit(const Orbit& old, const std::vector<std::vector<OrbitPiece>>&
 /// The state at the end of a piece.
 Eigen::VectorXd end_of(const OrbitPiece& piece, const Orbit& x);
 
-/// The collocation polynomial of segment s (from 0) at tau in [0, 1].
-Eigen::VectorXd state_at(const Orbit& x, const CollocationRule& rule, int s, double tau);
-
 // Which way a branch leads that begins where an event or a segment is born.
 
 /// What is born at the start of a branch; segments count from 0.

@@ -41,18 +41,6 @@ constexpr StrongResonance resonances[] = {{"1:1 resonance", 1.0, PointType::reso
 
 const StrongResonance& double_resonance(const CriticalPair& pair) { return resonances[pair.cosine() > 0.0 ? 0 : 1]; }
 
-/// State a at half the duration of the one segment.
-double halfway(const Orbit& x, const CollocationRule& rule, int a) {
-  const double* const mesh = x.mesh_of(0);
-  const int intervals = x.shape.intervals_of(0), c = x.shape.collocation;
-  const auto j = static_cast<int>(std::upper_bound(mesh, mesh + intervals, 0.5) - mesh) - 1;
-  std::array<double, CollocationRule::most_points + 1> basis{};
-  rule.basis((0.5 - mesh[j]) / (mesh[j + 1] - mesh[j]), basis.data(), nullptr);
-  double value = 0.0;
-  for (int i = 0; i <= c; ++i) value += basis[static_cast<std::size_t>(i)] * x.node(0, j * c + i)[a];
-  return value;
-}
-
 /// May the orbits be doubled ones: is the second half of the signature the first one again, or is there no section?
 bool may_be_doubled(const Signature& signature) {
   if (signature.size() == 1) return signature.front().event == no_function;
@@ -267,11 +255,10 @@ std::unique_ptr<TestFunction> turning_test(Eigen::Index principal, const std::st
 
 Eigen::VectorXd differences_of_halves(const Orbit& x, int segments, const CollocationRule& rule) {
   const int n = x.shape.dimension, half = segments / 2;
-  Eigen::VectorXd differences(n * std::max(half, 1));
+  if (half == 0) return x.states.col(0) - state_at(x, rule, 0, 0.5);
+  Eigen::VectorXd differences(n * half);
   for (int s = 0; s < half; ++s)
-    for (int a = 0; a < n; ++a) differences(s * n + a) = x.node(s, 0)[a] - x.node(half + s, 0)[a];
-  if (half == 0)
-    for (int a = 0; a < n; ++a) differences(a) = x.node(0, 0)[a] - halfway(x, rule, a);
+    differences.segment(s * n, n) = x.states.col(x.shape.first_node(s)) - x.states.col(x.shape.first_node(half + s));
   return differences;
 }
 

@@ -158,6 +158,42 @@ TEST_CASE("generalised period doubling, and the folds of doubled orbits that beg
   CHECK(workspace.solutions("born").back().parameter(2) < -0.4);
 }
 
+namespace {
+
+/// Folds of doubled orbits, followed to where their halves meet at p = q = 0, with several steps.
+void check_ends(const Workspace& workspace, const std::string& limit) {
+  workspace.succeed("run map -q -c r.up -s up -o doubled IRS=PD1 ISW=-1 DS=0.01 DSMAX=0.02 NMX=80 " + limit);
+  for (const char* const ds : {"0.02", "0.03", "0.015"}) {
+    INFO("DS = " << ds);
+    workspace.succeed(
+        std::string("run map -q -c r.doubled -s doubled -o folds ISW=2 ICP=[q,p] IRS=LP1 NMX=200 NPR=0 ") +
+        "RL0=-0.5 RL1=0.5 DSMAX=0.02 DS=" + ds);
+    check_place(workspace, "folds", "GPD", 0.0, 0.0);
+    CHECK(workspace.tchat("verify q.folds").status == 0);  // its states are those of the same parameters
+  }
+}
+
+}  // namespace
+
+TEST_CASE("folds of doubled orbits end where an orbit moves with the parameters") {
+  const Workspace workspace;
+  simulate(workspace, "par p=-0.3, q=-0.3\nc = 1 + 2*q + p^2\ninit z=0.49\nx = z - c\nz' = 0\n",
+           "z -> c - (1+p)*x + q*x^3 + x^5");
+  check_ends(workspace, "RL0=-0.5");
+}
+
+TEST_CASE("folds of doubled orbits end where a flow has no section") {
+  // Around the unit circle a band makes half a turn: a' = (p + q a^2 + a^4) a along one of its axes, b' = -b.
+  const Workspace workspace;
+  workspace.write("map.tch",
+                  "par p=-0.3, q=-0.3\ninit x=1\nr = x^2 + y^2\na2 = (u^2 + v^2 + x*(u^2 - v^2) + 2*y*u*v)/2\n"
+                  "A = p + q*a2 + a2^2\nx' = x*(1 - r) - y\ny' = y*(1 - r) + x\n"
+                  "u' = (A - 1)/2*u + (A + 1)/2*(x*u + y*v) - v/2\nv' = (A - 1)/2*v + (A + 1)/2*(y*u - x*v) + u/2\n");
+  workspace.succeed("simulate map --free p -o map --dat map -q");
+  workspace.succeed("run map -d map -c map -o up DS=0.01 DSMAX=0.02 NMX=60 RL1=0.1 -q");
+  check_ends(workspace, "RL1=0.5");
+}
+
 TEST_CASE("Chenciner point: the torus bifurcation is neither super- nor subcritical") {
   // The modulus is multiplied by 1 + p + q r^2 - r^4: Re d has the sign of q.
   const Workspace workspace;
