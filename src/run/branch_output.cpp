@@ -245,7 +245,7 @@ class ScreenOutput final : public BranchOutput {
     const bool is_shown = point.labelled() && point.special.type != PointType::regular;
     if (is_shown || point.number == 1 || change) {
       progress_.clear();
-      screen_ << format_table_line(line, section_.columns);
+      screen_ << format_table_line(recorded.shown, section_.columns);
     } else if (progress_.is_due()) {
       progress_.show(fmt::format("point {}, {} = {:.8g}, step {:.2g} ", point.number,
                                  shown_name(section_.columns.front()), line.values.front(), point.step));

@@ -33,6 +33,7 @@ struct BranchSection {
 struct RecordedPoint {
   const BranchPoint& of_branch;
   const PointLine& line;
+  const PointLine& shown;           ///< the same for the screen: parameters that are rounding of zero are 0
   std::string unknown_multipliers;  ///< "" when all multipliers are known
 };
 

@@ -146,14 +146,16 @@ void BranchWriter::write(const BranchPoint& point) {
   largest_values_.resize(line_.values.size(), 0.0);
   for (std::size_t k = 0; k < largest_values_.size(); ++k)
     largest_values_[k] = std::max(largest_values_[k], std::abs(line_.values[k]));
-  const RecordedPoint recorded{point, line_, undetermined_text(point.multipliers)};
+  shown_ = line_;
+  for (std::size_t k = 0; k < shown_.values.size(); ++k) shown_.values[k] = shown_value(line_, k);
+  const RecordedPoint recorded{point, line_, shown_, undetermined_text(point.multipliers)};
   for (const auto& output : outputs_) output->point(recorded);
   report_unknown_user_values(line_);
   files_.write_if_due();
   if (point.labelled())
     labels_.push_back({line_.label,
                        fmt::format("{}", fmt::join(type_names(line_.type, line_.kind, point.special.further), " ")),
-                       place(line_), description_of(recorded), label_type(line_.type), line_.kind});
+                       place(shown_), description_of(recorded), label_type(line_.type), line_.kind});
 }
 
 /// User functions are for output only: one that is not finite stops nothing, so it is reported, once.
@@ -169,13 +171,15 @@ void BranchWriter::report_unknown_user_values(const PointLine& line) {
   }
 }
 
-/// Below it a parameter is rounding of zero: what is too small for the full precision of a double, and what is far
-/// below the size of the parameter or the accuracy of a value that has been larger on the branch.
-double BranchWriter::least_value(std::size_t column) const {
-  const int index = section_.columns[column].index;
-  const double size = index <= parameter_sizes_.size() ? parameter_sizes_(index - 1) : 0.0;
-  return std::max({std::numeric_limits<double>::min(), level::negligible * largest_values_[column],
-                   level::rounding_of_sums * size});
+/// A parameter that is rounding of zero is shown as zero: what is too small for the full precision of a double, and
+/// what is far below the size of the parameter or of a value that has been larger on the branch.
+double BranchWriter::shown_value(const PointLine& line, std::size_t column) const {
+  const PointColumn& of = section_.columns[column];
+  if (of.kind != PointColumn::Kind::parameter) return line.values[column];
+  const double size = of.index <= parameter_sizes_.size() ? parameter_sizes_(of.index - 1) : 0.0;
+  const double least =
+      std::max(std::numeric_limits<double>::min(), level::negligible * std::max(largest_values_[column], size));
+  return std::abs(line.values[column]) < least ? 0.0 : line.values[column];
 }
 
 std::string BranchWriter::place(const PointLine& line) const {
@@ -184,8 +188,7 @@ std::string BranchWriter::place(const PointLine& line) const {
     const PointColumn& column = section_.columns[k];
     if (column.kind != PointColumn::Kind::parameter || (k > 0 && !is_parameter(section_.settings, column.index)))
       continue;
-    text += fmt::format("{}{} = {:.10g}", text.empty() ? "" : ", ", shown_name(column),
-                        std::abs(line.values[k]) < least_value(k) ? 0.0 : line.values[k]);
+    text += fmt::format("{}{} = {:.10g}", text.empty() ? "" : ", ", shown_name(column), line.values[k]);
   }
   return text;
 }

@@ -64,7 +64,7 @@ class BranchWriter final : public BranchSink {
   void find_column_values(const BranchPoint& point);
   double column_value(const PointColumn& column, const BranchPoint& point) const;
   std::string place(const PointLine& line) const;
-  double least_value(std::size_t column) const;
+  double shown_value(const PointLine& line, std::size_t column) const;
   void write(const BranchPoint& point);
   bool shown_stable(const BranchPoint& point);
   void report_unknown_user_values(const PointLine& line);
@@ -73,6 +73,7 @@ class BranchWriter final : public BranchSink {
 
   const CollocationRule& rule_;
   PointLine line_;                   // of the last point
+  PointLine shown_ = {};             // with 0 for what is rounding of it
   std::vector<double> user_values_;  // its user functions
   RunFiles& files_;
   BranchSection section_;

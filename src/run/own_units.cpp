@@ -120,8 +120,7 @@ std::optional<OwnUnits> in_units_along(const HybridSystem& system, const RunSett
   const double rate = fastest(defining, first, moves.cwiseQuotient(own.sizes), known);
   if (!(rate > 0.0) || std::find(known.begin(), known.end(), false) == known.end()) return std::nullopt;
   const Eigen::MatrixXd change = point.tangent.states / rate;
-  const StateSizes along = known_sizes(system, signature, point.orbit, &change);
-  const std::vector<bool> moving = along.known(known);
+  const std::vector<bool> moving = known_sizes(system, signature, point.orbit, &change).known(known);
   Eigen::VectorXd sizes = own.sizes;
   bool is_other = false;
   for (Eigen::Index k = 0; k < sizes.size(); ++k) {
