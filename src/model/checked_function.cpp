@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "base/levels.hpp"
@@ -93,24 +94,98 @@ std::string CheckedFunction::row_name(int row) const {
   }
 }
 
+namespace {
+
+/// Further step lengths, in those of the first differences; no two of them are halvings of one another. The last ones
+/// are for functions that oscillate within the first.
+constexpr std::array<double, 7> further_steps = {0.37, 0.37e-3, 0.14e-3, 0.37e-6, 0.14e-6, 0.37e-9, 0.14e-9};
+
+/// One column of derivatives against differences of several step lengths, which are taken as they are asked for.
+class ColumnComparison {
+ public:
+  /// `along`: the function of a step in the column's variable. `scale`: of the function.
+  ColumnComparison(std::function<VectorXd(double)> along, double step, double scale)
+      : along_(std::move(along)), step_(step), scale_(scale), differences_{extrapolated_difference(along_, step)} {}
+
+  /// Of an entry with these row, column and supplied value; nothing where no differences can be believed. A fault needs
+  /// two step lengths whose differences agree: on a function that oscillates within the step, and on rounding, an error
+  /// estimate may be small by chance.
+  std::optional<ComparedEntry> entry(ComparedEntry at) {
+    if (!std::isfinite(differences_.front().value(at.row))) return std::nullopt;
+    ComparedEntry found = compared(at, differences_.front());
+    for (std::size_t k = 0; found.at_fault() && std::isfinite(at.supplied); ++k) {
+      if (k == further_steps.size()) return std::nullopt;
+      const ExtrapolatedDifference& next = with_further_step(k);
+      if (agree(differences_[k], next, at.row)) break;
+      if (std::isfinite(next.value(at.row))) found = compared(at, next);
+    }
+    return found;
+  }
+
+ private:
+  double allowed(double error) const { return trust_factor * error + relative_tolerance * scale_; }
+
+  ComparedEntry compared(ComparedEntry at, const ExtrapolatedDifference& difference) const {
+    at.difference = difference.value(at.row);
+    const double distance = std::abs(at.supplied - at.difference);
+    at.relative = distance / scale_;
+    at.excess = std::isfinite(at.supplied) ? distance / allowed(difference.error(at.row)) : INFINITY;
+    return at;
+  }
+
+  bool agree(const ExtrapolatedDifference& a, const ExtrapolatedDifference& b, int row) const {
+    return std::abs(a.value(row) - b.value(row)) <= allowed(std::min(a.error(row), b.error(row)));
+  }
+
+  const ExtrapolatedDifference& with_further_step(std::size_t k) {
+    if (differences_.size() == k + 1)
+      differences_.push_back(extrapolated_difference(along_, further_steps.at(k) * step_));
+    return differences_[k + 1];
+  }
+
+  std::function<VectorXd(double)> along_;
+  double step_, scale_;
+  std::vector<ExtrapolatedDifference> differences_;
+};
+
+/// How far entries of `supplied` move with the last digits of the variables, one after the other.
+MatrixXd rounding_of(const CheckedFunction& function, const TestPoint& at, const MatrixXd& here,
+                     const std::function<MatrixXd(const TestPoint&)>& supplied) {
+  constexpr double few_digits = 8.0 * std::numeric_limits<double>::epsilon();
+  MatrixXd noise = MatrixXd::Zero(here.rows(), here.cols());
+  for (int c = 0; c < function.variables(); ++c)
+    for (const double t : {few_digits, -few_digits}) {
+      const MatrixXd near = supplied(function.moved(at, c, t * function.variable(at, c)));
+      if (near.allFinite()) noise = noise.cwiseMax((near - here).cwiseAbs());
+    }
+  return noise;
+}
+
+}  // namespace
+
 MatrixComparison compare_with_differences(const CheckedFunction& function, const TestPoint& at,
-                                          const MatrixXd& supplied,
+                                          const std::function<MatrixXd(const TestPoint&)>& supplied,
                                           const std::function<VectorXd(const TestPoint&)>& value) {
   MatrixComparison comparison;
-  const double value_scale = value(at).lpNorm<Eigen::Infinity>();
-  const double scale = 1.0 + std::max(value_scale, supplied.lpNorm<Eigen::Infinity>());
+  const MatrixXd here = supplied(at);
+  const double scale = 1.0 + std::max(value(at).lpNorm<Eigen::Infinity>(), here.lpNorm<Eigen::Infinity>());
+  std::optional<MatrixXd> noise;
   for (int c = 0; c < function.variables(); ++c) {
-    const double step = 0.02 * checked_range(function.variable(at, c));
-    const auto along = [&](double t) { return value(function.moved(at, c, t)); };
-    const ExtrapolatedDifference difference = extrapolated_difference(along, step);
+    ColumnComparison column([&](double t) { return value(function.moved(at, c, t)); },
+                            0.02 * checked_range(function.variable(at, c)), scale);
     for (int r = 0; r < function.rows(); ++r) {
-      if (!std::isfinite(difference.value(r))) continue;
-      const double distance = std::abs(supplied(r, c) - difference.value(r));
-      const double allowed = trust_factor * difference.error(r) + relative_tolerance * scale;
-      const double excess = std::isfinite(supplied(r, c)) ? distance / allowed : INFINITY;
-      const ComparedEntry entry = {distance / scale, excess, r, c, supplied(r, c), difference.value(r)};
-      if (entry.at_fault()) comparison.faults.push_back(entry);
-      if (entry.excess > comparison.worst.excess) comparison.worst = entry;
+      ComparedEntry place;
+      place.row = r;
+      place.column = c;
+      place.supplied = here(r, c);
+      std::optional<ComparedEntry> entry = column.entry(place);
+      if (entry && entry->at_fault()) {
+        if (!noise) noise = rounding_of(function, at, here, supplied);
+        if (std::abs(entry->supplied - entry->difference) <= trust_factor * (*noise)(r, c)) entry.reset();
+      }
+      if (!entry) continue;
+      if (entry->at_fault()) comparison.faults.push_back(*entry);
+      if (entry->excess > comparison.worst.excess) comparison.worst = *entry;
     }
   }
   return comparison;

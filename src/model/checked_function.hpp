@@ -75,11 +75,13 @@ struct MatrixComparison {
   std::vector<ComparedEntry> faults;  // column by column
 };
 
-/// Compares `supplied`, rows x variables, with differences of `value` (a view of the function, or of its directional
-/// derivative). An entry is at fault when it is off by more than 20 times the differences' error estimate and 1e-8 of
-/// the function's scale; entries whose differences cannot be evaluated are passed over.
+/// Compares `supplied`, a matrix rows x variables of each point, with differences of `value` (a view of the function,
+/// or of its directional derivative). An entry is at fault when it is off by more than 20 times the differences' error
+/// estimate and 1e-8 of the function's scale, and differences of two step lengths agree; entries where no two do are
+/// passed over. `supplied` is evaluated again at points with other last digits where an entry seems to be at fault:
+/// what changes with them is rounding, and no fault.
 MatrixComparison compare_with_differences(const CheckedFunction& function, const TestPoint& at,
-                                          const Eigen::MatrixXd& supplied,
+                                          const std::function<Eigen::MatrixXd(const TestPoint&)>& supplied,
                                           const std::function<Eigen::VectorXd(const TestPoint&)>& value);
 
 // Derivatives of a function of one variable by central differences with Richardson extrapolation, and how far to

@@ -83,6 +83,52 @@ struct SmallButWrong : Small {
   }
 };
 
+/// Nothing says how small its states are.
+struct Oscillating {
+  static constexpr int dimension = 2, parameters = 1, fields = 1, events = 1, jumps = 1;
+  template <class T>
+  void field(int, const T* x, const T*, T* f) const {
+    using std::sin;
+    f[0] = x[1];
+    f[1] = -1e7 * sin(1e9 * x[0]);
+  }
+  template <class T>
+  T event(int, const T* x, const T*) const {
+    return x[1];
+  }
+  template <class T>
+  void jump(int, const T* x, const T*, T* g) const {
+    g[0] = x[0], g[1] = x[1];
+  }
+};
+
+struct OscillatingButWrong : Oscillating {
+  void field_derivatives(int, const double* x, const double*, double* dx, double* dp) const {
+    dx[0] = dx[3] = dp[0] = dp[1] = 0.0;
+    dx[1] = -1e16 * std::cos(1e9 * x[0]) * (1.0 + 1e-3);
+    dx[2] = 1.0;
+  }
+};
+
+/// Its derivatives by the parameter vanish, but for the rounding of terms up to 1e24.
+struct Cancelling {
+  static constexpr int dimension = 2, parameters = 1, fields = 1, events = 1, jumps = 1;
+  static constexpr double initial_parameters[] = {7e-13};
+  template <class T>
+  void field(int, const T* x, const T* par, T* f) const {
+    f[0] = x[1];
+    f[1] = sin(par[0] * x[0] / (par[0] + 0.3 * par[0])) - x[0];
+  }
+  template <class T>
+  T event(int, const T* x, const T*) const {
+    return x[1];
+  }
+  template <class T>
+  void jump(int, const T* x, const T*, T* g) const {
+    g[0] = x[0], g[1] = x[1];
+  }
+};
+
 struct Unset : Sound {
   template <class T>
   void field(int, const T* x, const T*, T* f) const {
@@ -203,6 +249,15 @@ TEST_CASE("a wrong second derivative is named") {
 
 TEST_CASE("wrong derivatives are found whatever the units of states are") {
   CHECK_THAT(report<SmallButWrong>(), Contains("fault: d f_1[U(2)] / d U(1)"));
+}
+
+TEST_CASE("functions that oscillate within the step of differences are believed, and faults in them found") {
+  CHECK_THAT(report<Oscillating>(), Contains("No fault found"));
+  CHECK_THAT(report<OscillatingButWrong>(), Contains("fault: d f_1[U(2)] / d U(1)"));
+}
+
+TEST_CASE("rounding of supplied derivatives is no fault") {
+  CHECK_THAT(report<Cancelling>(), Contains("No fault found"));
 }
 
 TEST_CASE("directional derivatives that contradict the first ones are named") {
