@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/levels.hpp"
+#include "model/events.hpp"
 
 namespace tchat {
 
@@ -51,7 +52,7 @@ class Conservation {
       const VectorXd& x = *admissible;
       system_.value(FunctionKind::field, field, x.data(), par_.data(), f.data());
       function_.first(x.data(), par_.data(), gradient.data(), none.data());
-      const double scale = gradient.norm() * f.norm();
+      const double scale = gradient.cwiseAbs().dot(f.cwiseAbs());
       largest.add(gradient.dot(f), scale > 0.0 ? scale : 1.0, x);
     }
     return largest;
@@ -106,19 +107,9 @@ class Conservation {
     return x;
   }
 
-  /// The point where the event function is zero, by Newton's method along its gradient.
   std::optional<VectorXd> on_surface(int event, VectorXd x) const {
-    constexpr int most = 20;
-    VectorXd gradient(n_);
-    for (int k = 0; k < most && event != no_function; ++k) {
-      double h = 0.0;
-      system_.first(FunctionKind::event, event, x.data(), par_.data(), {}, &h, gradient.data(), nullptr);
-      const double step = h / gradient.squaredNorm();
-      if (!std::isfinite(step)) return std::nullopt;
-      x -= step * gradient;
-      if (std::abs(step) * gradient.norm() <= level::rounding * x.norm()) return x;
-    }
-    return event == no_function ? std::optional(x) : std::nullopt;
+    if (event == no_function) return x;
+    return onto_surface(system_, event, no_function, std::move(x), par_.data());
   }
 
   const HybridSystem& system_;

@@ -96,9 +96,11 @@ std::string CheckedFunction::row_name(int row) const {
 
 namespace {
 
-/// Further step lengths, in those of the first differences; no two of them are halvings of one another. The last ones
-/// are for functions that oscillate within the first.
-constexpr std::array<double, 7> further_steps = {0.37, 0.37e-3, 0.14e-3, 0.37e-6, 0.14e-6, 0.37e-9, 0.14e-9};
+/// How often differences are taken once more, with shorter and shorter steps that are no halvings of one another: the
+/// last ones for functions that oscillate within the first.
+constexpr std::size_t most_retries = 20;
+constexpr double next_step = 0.37;
+constexpr double same_digits = level::visible;  // of differences that agree
 
 /// One column of derivatives against differences of several step lengths, which are taken as they are asked for.
 class ColumnComparison {
@@ -114,8 +116,8 @@ class ColumnComparison {
     if (!std::isfinite(differences_.front().value(at.row))) return std::nullopt;
     ComparedEntry found = compared(at, differences_.front());
     for (std::size_t k = 0; found.at_fault() && std::isfinite(at.supplied); ++k) {
-      if (k == further_steps.size()) return std::nullopt;
-      const ExtrapolatedDifference& next = with_further_step(k);
+      if (k == most_retries) return std::nullopt;
+      const ExtrapolatedDifference& next = with_shorter_step(k);
       if (agree(differences_[k], next, at.row)) break;
       if (std::isfinite(next.value(at.row))) found = compared(at, next);
     }
@@ -133,13 +135,15 @@ class ColumnComparison {
     return at;
   }
 
+  /// Differences that are values of an oscillation by chance are about as large as its amplitude by the step.
   bool agree(const ExtrapolatedDifference& a, const ExtrapolatedDifference& b, int row) const {
-    return std::abs(a.value(row) - b.value(row)) <= allowed(std::min(a.error(row), b.error(row)));
+    const double larger = std::max(std::abs(a.value(row)), std::abs(b.value(row)));
+    const double of_amplitude = level::differences * std::abs(along_(step_)(row) / step_);
+    return std::abs(a.value(row) - b.value(row)) <= same_digits * larger + of_amplitude;
   }
 
-  const ExtrapolatedDifference& with_further_step(std::size_t k) {
-    if (differences_.size() == k + 1)
-      differences_.push_back(extrapolated_difference(along_, further_steps.at(k) * step_));
+  const ExtrapolatedDifference& with_shorter_step(std::size_t k) {
+    if (differences_.size() == k + 1) differences_.push_back(extrapolated_difference(along_, step_ *= next_step));
     return differences_[k + 1];
   }
 

@@ -9,6 +9,7 @@
 
 #include "base/levels.hpp"
 #include "model/parameter_vector.hpp"
+#include "model/scales.hpp"
 
 namespace tchat {
 
@@ -39,6 +40,26 @@ EventAt event_at(const HybridSystem& system, int event, int field, const double*
   at.f.resize(system.dimension());
   system.value(FunctionKind::field, field, x, par, at.f.data());
   return at;
+}
+
+std::optional<Eigen::VectorXd> onto_surface(const HybridSystem& system, int event, int field, Eigen::VectorXd x,
+                                            const double* par, const Eigen::VectorXd& given) {
+  constexpr int most_steps = 50;
+  const Eigen::VectorXd sizes =
+      given.size() == 0 ? Eigen::VectorXd::Ones(x.size()).eval() : given.unaryExpr(&size_for_tolerance).eval();
+  double last = INFINITY;
+  for (int k = 0; k < most_steps; ++k) {
+    EventAt at = event_at(system, event, x.data(), par);
+    if (field != no_function) clear_absent(system, field, at.gradient);
+    const Eigen::VectorXd normal = at.gradient.cwiseProduct(sizes);
+    const double square = normal.squaredNorm();
+    const double now = std::abs(at.h);
+    if (!std::isfinite(now) || !std::isfinite(square) || !(square > 0.0)) return std::nullopt;
+    if (now == 0.0 || (now >= last && now <= level::rounding_of_sums * at.scale(x.data(), sizes))) return x;
+    x -= sizes.cwiseProduct(normal) * (at.h / square);
+    last = now;
+  }
+  return std::nullopt;
 }
 
 Eigen::VectorXd rate_gradient(const HybridSystem& system, const EventAt& at, int event, int field, const double* x,
@@ -155,17 +176,9 @@ ParameterVector generic_parameters(const HybridSystem& system) {
 /// A state of the field's mode with h = 0, by Newton's method along the gradient from a generic one.
 std::optional<Eigen::VectorXd> state_on_surface(const HybridSystem& system, int event, int field,
                                                 const ParameterVector& par, int trial) {
-  constexpr int most_iterations = 50;
   Eigen::VectorXd x = Eigen::VectorXd::Zero(system.dimension());
   for (int i = 0; i < system.dimension_of(field); ++i) x(i) = std::sin(1.3 + i + 2.1 * trial);
-  for (int k = 0; k < most_iterations; ++k) {
-    const EventAt at = event_at(system, event, field, x.data(), par.data());
-    const double square = at.gradient.squaredNorm();
-    if (!std::isfinite(at.h) || !std::isfinite(square) || square == 0.0) return std::nullopt;
-    if (std::abs(at.h) <= level::rounding_of_sums * at.scale(x.data())) return x;
-    x -= at.h / square * at.gradient;
-  }
-  return std::nullopt;
+  return onto_surface(system, event, field, std::move(x), par.data());
 }
 
 /// At one state of the surface of `before`; nothing where it has no finite values.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -46,6 +47,11 @@ struct EventAt {
 EventAt event_at(const HybridSystem& system, int event, const double* x, const double* par);
 /// With field i; h_x is zero for states that its mode has not.
 EventAt event_at(const HybridSystem& system, int event, int field, const double* x, const double* par);
+/// x on the surface h_j = 0 by Newton's method, each step the shortest one in these sizes of states (n, 0 where not
+/// known; none: 1). Nothing where h_j has no finite value, depends on no state or does not become zero. Field 0: all
+/// states.
+std::optional<Eigen::VectorXd> onto_surface(const HybridSystem& system, int event, int field, Eigen::VectorXd x,
+                                            const double* par, const Eigen::VectorXd& sizes = {});
 /// The gradient of h_x f of field i at the same state: h_xx f + h_x f_x.
 Eigen::VectorXd rate_gradient(const HybridSystem& system, const EventAt& at, int event, int field, const double* x,
                               const double* par);

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "base/levels.hpp"
-#include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
 
 namespace tchat {
@@ -58,16 +57,10 @@ VectorXd without_ignorable(const OrbitCandidate& candidate, VectorXd d) {
 }
 
 /// Onto the surface h = 0 of the event that the motion has met.
-VectorXd on_surface(const OrbitCandidate& candidate, VectorXd y) {
-  const HybridSystem& system = candidate.motion.system();
-  const IndexVector& last = candidate.signature.back();
-  for (int step = 0; step < 5; ++step) {
-    const EventAt at = event_at(system, last.event, last.field, y.data(), candidate.motion.parameters().data());
-    const double square = at.gradient.squaredNorm();
-    if (!(square > 0.0)) break;
-    y -= at.gradient * (at.h / square);
-  }
-  return y;
+VectorXd on_surface(const OrbitCandidate& candidate, const VectorXd& y) {
+  return onto_surface(candidate.motion.system(), candidate.signature.back().event, no_function, y,
+                      candidate.motion.parameters().data(), candidate.motion.sizes())
+      .value_or(y);
 }
 
 SimulatedTurn turn_from(const OrbitCandidate& candidate, const VectorXd& y, double tolerance, bool with_derivative) {
@@ -75,12 +68,6 @@ SimulatedTurn turn_from(const OrbitCandidate& candidate, const VectorXd& y, doub
   settings.samples = 0;
   settings.sections.clear();
   return simulate_turn(candidate.motion, y, candidate.signature, settings, with_derivative);
-}
-
-VectorXd newton_step(const OrbitCandidate& candidate, const MatrixXd& derivative, const VectorXd& residual) {
-  MatrixXd matrix = MatrixXd::Identity(residual.size(), residual.size()) - derivative;
-  for (const Index k : candidate.ignorable) matrix.row(k) = VectorXd::Unit(residual.size(), k).transpose();
-  return solve_with_complete_pivoting(matrix, residual);
 }
 
 /// A turn whose parts are alike is no turn: the orbit is a shorter one.
@@ -130,17 +117,7 @@ class ApproachTest {
   ApproachTest(const OrbitCandidate& candidate, const CorrectedOrbit& orbit)
       : candidate_(candidate), orbit_(orbit), map_(orbit.turn.derivative) {
     for (const Index k : candidate.ignorable) map_.row(k).setZero(), map_.col(k).setZero();
-    VectorXd squares(map_.rows());
-    for (Index i = 0; i < map_.rows(); ++i)
-      squares(i) = candidate.scale(i) > 0.0 ? std::pow(candidate.scale(i), -2) : 0.0;
-    weight_ = squares.asDiagonal();
-    // By doubling: W_2k = W_k + (M^k)' W_k M^k.
-    constexpr double vanished = std::numeric_limits<double>::min();
-    MatrixXd m = map_;
-    for (int doubling = 0; doubling < 60 && weight_.allFinite() && m.cwiseAbs().maxCoeff() > vanished; ++doubling) {
-      weight_ = (weight_ + m.transpose() * weight_ * m).eval();
-      m = (m * m).eval();
-    }
+    weight_ = decay_weight(map_, candidate.scale);
   }
 
   bool has_weight() const { return weight_.allFinite(); }
@@ -207,6 +184,17 @@ class ApproachTest {
 
 }  // namespace
 
+MatrixXd decay_weight(MatrixXd m, const VectorXd& scale) {
+  constexpr double vanished = std::numeric_limits<double>::min();
+  constexpr int most_doublings = 60;  // W_2k = W_k + (M^k)' W_k M^k
+  MatrixXd w = scale.unaryExpr([](double s) { return s > 0.0 ? std::pow(s, -2) : 0.0; }).asDiagonal();
+  for (int k = 0; k < most_doublings && w.allFinite() && m.cwiseAbs().maxCoeff() > vanished; ++k) {
+    w = (w + m.transpose() * w * m).eval();
+    m = (m * m).eval();
+  }
+  return w;
+}
+
 SimulatedTurn turn_of(const OrbitCandidate& candidate, const VectorXd& y) {
   return simulate_turn(candidate.motion, y, candidate.signature, accurate(candidate.settings, tolerance_of_turns),
                        false);
@@ -228,7 +216,7 @@ CorrectedOrbit correct_orbit(const OrbitCandidate& candidate) {
     last_modulus = largest_modulus(orbit.multipliers);
     orbit.multipliers = multipliers_without(orbit.turn.derivative, candidate.ignorable);
     const bool is_noise = size_of(candidate, residual) <= noise(candidate);
-    const VectorXd dy = newton_step(candidate, orbit.turn.derivative, residual);
+    const VectorXd dy = closing_step(orbit.turn.derivative, residual, candidate.ignorable, candidate.motion.sizes());
     const double size = size_of(candidate, dy);
     const bool is_rough = is_noise && last_step <= rough_step && !(size < 0.25 * last_step);
     if (last_step <= newton_converged || is_rough) break;

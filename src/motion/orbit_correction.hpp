@@ -46,6 +46,10 @@ CorrectedOrbit correct_orbit(const OrbitCandidate& candidate);
 /// The turn from y as accurately as it is corrected, with the samples and marks of the candidate's settings.
 SimulatedTurn turn_of(const OrbitCandidate& candidate, const Eigen::VectorXd& y);
 
+/// W = sum over k of M^k' D^2 M^k, D = diag(1 / scale), 0 where that is not positive; not finite where M^k does not
+/// decay.
+Eigen::MatrixXd decay_weight(Eigen::MatrixXd m, const Eigen::VectorXd& scale);
+
 /// Does the motion approach this stable orbit? V(d) = sum over k of |D M^k d|^2, D = diag(1 / scale), falls from turn
 /// to turn where the orbit's linearisation M holds. V of the motion's distance d from the orbit must fall by half of
 /// what M predicts, at least, in the turns that follow, and in turns from states between the motion and the orbit, so

@@ -216,6 +216,15 @@ ReturnMap return_map(const HybridSystem& system, const Signature& signature, con
   return map;
 }
 
+VectorXd closing_step(const MatrixXd& derivative, const VectorXd& gap, const std::vector<Eigen::Index>& ignorable,
+                      const VectorXd& known) {
+  const VectorXd sizes = known.unaryExpr(&size_for_tolerance);
+  MatrixXd matrix = MatrixXd::Identity(gap.size(), gap.size()) - derivative;
+  for (const Eigen::Index k : ignorable) matrix.row(k) = VectorXd::Unit(gap.size(), k).transpose();
+  const auto divide = sizes.cwiseInverse().asDiagonal();
+  return sizes.cwiseProduct(solve_with_complete_pivoting(divide * matrix * sizes.asDiagonal(), divide * gap));
+}
+
 PeriodicOrbit shoot(const HybridSystem& system, const Signature& signature, const VectorXd& guess, const VectorXd& par,
                     const ShootingOptions& options) {
   const bool has_sizes = !are_usual(options.flow.sizes);
@@ -239,12 +248,9 @@ PeriodicOrbit shoot(const HybridSystem& system, const Signature& signature, cons
                                   orbit.iterations, orbit.residual, last_step);
       return orbit;
     }
-    MatrixXd matrix = MatrixXd::Identity(residual.size(), residual.size()) - orbit.map.derivative;
-    for (const Eigen::Index k : options.ignorable) matrix.row(k) = VectorXd::Unit(residual.size(), k).transpose();
-    const auto divide = sizes.cwiseInverse().asDiagonal();
-    const VectorXd in_sizes = -solve_with_complete_pivoting(divide * matrix * sizes.asDiagonal(), divide * residual);
-    const VectorXd step = sizes.cwiseProduct(in_sizes);
-    last_step = in_sizes.lpNorm<Eigen::Infinity>() / (1.0 + orbit.start.cwiseQuotient(sizes).lpNorm<Eigen::Infinity>());
+    const VectorXd step = closing_step(orbit.map.derivative, -residual, options.ignorable, sizes);
+    last_step = step.cwiseQuotient(sizes).lpNorm<Eigen::Infinity>() /
+                (1.0 + orbit.start.cwiseQuotient(sizes).lpNorm<Eigen::Infinity>());
     orbit.start += step;
     ++orbit.iterations;
     if (!orbit.start.allFinite()) {

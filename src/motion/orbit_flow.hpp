@@ -114,6 +114,11 @@ struct PeriodicOrbit {
   ReturnMap map;          ///< at `start`
 };
 
+/// dx of (Id - M) dx = gap, n, in sizes of states (n, 0 where not known), where a row that nothing depends on is dx_k =
+/// gap_k.
+Eigen::VectorXd closing_step(const Eigen::MatrixXd& derivative, const Eigen::VectorXd& gap,
+                             const std::vector<Eigen::Index>& ignorable, const Eigen::VectorXd& sizes);
+
 /// Newton's method on x1 - R(x1) = 0 with the matrix Id - M. The signature's own events fix the phase, so the matrix
 /// is regular away from folds and branch points.
 PeriodicOrbit shoot(const HybridSystem& system, const Signature& signature, const Eigen::VectorXd& guess,

@@ -2,9 +2,9 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <limits>
 
 #include "model/events.hpp"
+#include "motion/orbit_correction.hpp"
 #include "motion/orbit_flow.hpp"
 
 namespace tchat {
@@ -18,17 +18,6 @@ constexpr int probes = 64;
 constexpr int shrinkings = 12;
 constexpr double widest = 1.0;    // of the region tried first, in ranges
 constexpr double slowest = 1e12;  // of W: slower orbits capture nothing
-
-/// W, by doubling: W_2k = W_k + (M^k)' W_k M^k.
-MatrixXd capture_weight(MatrixXd m, const VectorXd& range) {
-  constexpr double vanished = std::numeric_limits<double>::min();
-  MatrixXd w = range.array().square().inverse().matrix().asDiagonal();
-  for (int doubling = 0; doubling < 40 && w.allFinite() && m.cwiseAbs().maxCoeff() > vanished; ++doubling) {
-    w = (w + m.transpose() * w * m).eval();
-    m = (m * m).eval();
-  }
-  return w;
-}
 
 /// Directions that fill the sphere evenly, the same ones in every process.
 VectorXd probe_direction(int k, Eigen::Index n) {
@@ -65,14 +54,11 @@ class CaptureProbe {
  private:
   /// Onto the surface of the event, then the jump.
   VectorXd after_jump(VectorXd x) const {
-    for (int step = 0; step < 5; ++step) {
-      const EventAt at = event_at(system_, region_.event.event, x.data(), par_.data());
-      const double size = at.gradient.squaredNorm();
-      if (!(size > 0.0)) return {};
-      x -= at.gradient * (at.h / size);
-    }
-    VectorXd g(x.size());
-    system_.value(FunctionKind::jump, region_.event.jump, x.data(), par_.data(), g.data());
+    const std::optional<VectorXd> met =
+        onto_surface(system_, region_.event.event, no_function, std::move(x), par_.data(), range_);
+    if (!met) return {};
+    VectorXd g(met->size());
+    system_.value(FunctionKind::jump, region_.event.jump, met->data(), par_.data(), g.data());
     return g.allFinite() ? g : VectorXd();
   }
 
@@ -94,7 +80,7 @@ CaptureRegion capture_region(const HybridSystem& system, const AttractorSample& 
   const ReturnMap map = return_map(system, sample.signature, region.centre, par);
   if (!map.ok || !map.derivative.allFinite()) return region;
   const VectorXd range = floored_range(sample.range, sample.last.x.cwiseAbs().maxCoeff());
-  region.weight = capture_weight(map.derivative, range);
+  region.weight = decay_weight(map.derivative, range);
   if (!region.weight.allFinite() || region.weight.norm() * range.squaredNorm() > slowest) return region;
 
   const CaptureProbe probe(system, par, region, map.segments.back().end, range);

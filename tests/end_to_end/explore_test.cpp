@@ -223,7 +223,7 @@ TEST_CASE("where one direction from a branch point is known, the other one alone
   const Workspace workspace;
   std::filesystem::copy(RELAY_SOURCE, workspace.file("relay.cpp"));
   const std::string tree = explored(workspace,
-                                    "relay --over omega=7.15:7.5:26 PAR(zeta)=0.05 --starts 0 --branches 3 "
+                                    "relay --over omega=7.15:7.5:30 PAR(zeta)=0.05 --starts 0 --branches 3 "
                                     "UZR={omega:[7.18,7.25,7.29,7.35,7.45]}");
   INFO(tree);
   CHECK(std::regex_search(tree, std::regex("-> a2_BP[0-9]+_(for|back)ward\n")));
