@@ -92,7 +92,9 @@ void TangentFlow::apply_exponential(MatrixXd& vectors) {
     product_.noalias() = omega_ * term_;
     term_ = product_ / static_cast<double>(k);
     vectors += term_;
-    if (!(term_.lpNorm<Eigen::Infinity>() > enough * vectors.lpNorm<Eigen::Infinity>())) return;
+    // Each column by itself: in units of the states one may be many times as large as another.
+    const auto sizes = vectors.colwise().lpNorm<Eigen::Infinity>().array();
+    if ((term_.colwise().lpNorm<Eigen::Infinity>().array() <= enough * sizes).all()) return;
   }
 }
 
