@@ -96,6 +96,19 @@ VectorXd ranges(const std::vector<SimulatedSegment>& turn, const std::vector<Eig
   return range;
 }
 
+/// Shooting has gone to an equilibrium: nothing moves in a period, in ranges of the simulated turn.
+bool is_at_rest(const HybridSystem& system, const FoundOrbit& found, const PeriodicOrbit& orbit, const VectorXd& par,
+                const VectorXd& range) {
+  VectorXd f(range.size());
+  double fastest = 0.0;
+  for (std::size_t s = 0; s < found.signature.size(); ++s)
+    for (const VectorXd& x : {orbit.map.segments[s].start, orbit.map.segments[s].end}) {
+      system.value(FunctionKind::field, found.signature[s].field, x.data(), par.data(), f.data());
+      fastest = std::max(fastest, f.cwiseQuotient(range).lpNorm<Eigen::Infinity>());
+    }
+  return fastest * orbit.map.period <= level::located;
+}
+
 /// The number of segments after which the orbit already repeats itself: near an orbit with a multiplier close to -1 the
 /// simulation comes back best after two turns.
 std::size_t true_period(const FoundOrbit& found, const PeriodicOrbit& orbit, const VectorXd& range) {
@@ -211,6 +224,10 @@ FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, co
     return found;
   }
   found.moved = orbit.start - turn.front().start;
+  if (is_at_rest(system, found, orbit, par, range)) {
+    found.message = "shooting went to an equilibrium, where nothing moves";
+    return found;
+  }
   const double share = found.moved.cwiseQuotient(range).lpNorm<Eigen::Infinity>();
   if (!is_guess && !(share < same_orbit)) {
     found.message = fmt::format("shooting went {:.2g} of its range away, to another orbit", share);
