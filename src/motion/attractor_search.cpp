@@ -78,12 +78,24 @@ std::vector<bool> rounding_among(std::vector<bool> tiny, const HybridSimulation&
 void AttractorSearch::add(const HybridSimulation& motion, const SimulatedSegment& segment) {
   if (points_.size() < points_looked_at) find_ignorable(motion, segment);
   recurrence_.add(segment);
-  recurrence_.take_for_rounding(rounding_among(recurrence_.tiny_states(), motion, segment));
+  range_.add(segment);
+  rounding_ = rounding_among(recurrence_.tiny_states(), motion, segment);
+  recurrence_.take_for_rounding(rounding_);
   last_.push_back(segment);
   if (last_.size() > static_cast<std::size_t>(max_period_)) last_.pop_front();
   passed_.push_back({segment.index, segment.end});
   if (passed_.size() > most_passed) passed_.pop_front();
   ++events_;
+}
+
+std::string AttractorSearch::unbounded(const HybridSystem& system) const {
+  std::vector<bool> left_out = rounding_;
+  left_out.resize(static_cast<std::size_t>(system.dimension()), false);
+  for (const Index k : ignorable_) left_out[static_cast<std::size_t>(k)] = true;
+  const std::optional<Index> state = range_.growing(left_out);
+  if (!state) return "";
+  return fmt::format("the range of {} still grows, {:.3g}-fold since half of the events",
+                     system.state_name(static_cast<int>(*state) + 1), range_.growth(*state));
 }
 
 /// States of the last event and of those a whole number of periods before it, as long as the events repeat themselves.
@@ -167,8 +179,20 @@ bool AttractorSearch::try_period(const HybridSimulation& motion, std::size_t per
   const bool repeats = recurrence_.period() == static_cast<int>(period);
   SettledOrbit found;
   found.end = corrected.converged ? corrected.end : candidate.end;
+  if (repeats && corrected.is_smooth && (!corrected.converged || corrected.stability() == OrbitStability::neutral)) {
+    const Neighbours beside = neighbours_of(candidate, found.end, corrected.uncertainty);
+    if (beside == Neighbours::open || (beside == Neighbours::isolated && !corrected.converged)) {
+      doubt_ = fmt::format(
+          "the motion repeats itself after {} event(s), and turns beside it do not, as where it passes "
+          "a fold slowly",
+          period);
+      is_near_unstable_ = true;
+      return false;
+    }
+    found.is_of_family = beside == Neighbours::closed;
+  }
   if (!corrected.converged) {
-    if (!repeats || corrected.is_smooth) return false;
+    if (!repeats || (corrected.is_smooth && !found.is_of_family)) return false;
     found.turn.assign(last_.end() - static_cast<std::ptrdiff_t>(period), last_.end());
     found.stability = OrbitStability::neutral;
   } else {
@@ -289,7 +313,7 @@ VectorXd on_event(const HybridSimulation& motion, const VectorXd& end, const Vec
 }
 
 ChaosEvidence evidence_of_end(const MotionBeside& motion) {
-  return {false, motion.was_interrupted(), "a motion that begins beside it has ended: " + motion.why_ended()};
+  return {false, motion.was_interrupted(), "a motion that begins beside it has ended: " + motion.why_ended(), 0};
 }
 
 }  // namespace
@@ -337,16 +361,19 @@ ChaosEvidence chaos_evidence(const std::function<std::unique_ptr<MotionBeside>(c
   if (!(events_before <= static_cast<double>(most_events)))
     return {false, false,
             fmt::format("a distance grows {:.2g}-fold in {} events only, as where a motion leaves something unstable",
-                        std::exp(rate * beside->time() * most_events / first_window), most_events)};
+                        std::exp(rate * beside->time() * most_events / first_window), most_events),
+            0};
   const std::unique_ptr<MotionBeside> pushed = begin_beside(push_along(direction, beside->range()));
   if (!pushed->pass(1 + static_cast<long>(events_before), nullptr)) return evidence_of_end(*pushed);
   ChaosJudge judge;
   LyapunovSpectrum spectrum;
+  long events = 1 + static_cast<long>(events_before);
   for (long window = first_window; !judge.is_chaotic() && !judge.is_regular() && window < most_events; window *= 2) {
     if (!pushed->pass(window, &spectrum)) return evidence_of_end(*pushed);
     judge.add(spectrum, pushed->range());
+    events += window;
   }
-  return {judge.is_chaotic(), false, judge.is_chaotic() ? "" : judge.doubt()};
+  return {judge.is_chaotic(), false, judge.is_chaotic() ? "" : judge.doubt(), events};
 }
 
 ChaosEvidence chaos_evidence(const HybridSimulation& motion, const VectorXd& end, const VectorXd& direction,

@@ -32,6 +32,7 @@ struct SettledOrbit {
   std::vector<SimulatedSegment> turn;  ///< of the orbit itself where it has been corrected, else of the motion
   Eigen::VectorXd end;                 ///< state on it in which the last event of the motion is met; n
   bool is_corrected = false;
+  bool is_of_family = false;  ///< neutral, and orbits beside it are closed as well
   OrbitStability stability = OrbitStability::stable;
   std::vector<std::complex<double>> multipliers;  ///< where it has been corrected
   double uncertainty = 0.0;                       ///< of their moduli
@@ -62,6 +63,9 @@ class AttractorSearch {
   /// yet.
   bool is_near_unstable_orbit() const { return is_near_unstable_; }
   const std::vector<Eigen::Index>& ignorable() const { return ignorable_; }
+  /// The range of a state that something depends on still grows: why the motion is on no attractor yet. "" where none
+  /// does.
+  std::string unbounded(const HybridSystem& system) const;
   /// A state is larger than so much, and than so many times its value at the start; those that nothing depends on do
   /// not count.
   bool is_beyond(const Eigen::VectorXd& x, double bound, const Eigen::VectorXd& start) const;
@@ -79,8 +83,10 @@ class AttractorSearch {
   double recognition_;
   SimulationSettings settings_;
   Recurrence recurrence_;
+  RangeGrowth range_;
   std::vector<Eigen::VectorXd> points_;  // where functions were looked at
   std::vector<Eigen::Index> ignorable_;
+  std::vector<bool> rounding_;         // which states are nothing else
   std::deque<SimulatedSegment> last_;  // the last max_period
   struct Passed {
     IndexVector index;
@@ -143,6 +149,7 @@ struct ChaosEvidence {
   bool is_chaotic = false;
   bool was_interrupted = false;
   std::string doubt;  ///< why it is not known to be chaotic
+  long events = 0;    ///< that have been looked at
 };
 
 /// A motion that begins beside another one, of which one part after the other is looked at. Events may be returns of a

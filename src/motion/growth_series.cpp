@@ -160,6 +160,7 @@ LyapunovSpectrum GrowthSeries::spectrum(Index structural) const {
   spectrum.errors = VectorXd::Constant(directions, std::numeric_limits<double>::infinity());
   if (used_ == 0) return spectrum;
   spectrum.time = bins_.row(directions).head(used_).sum();
+  spectrum.all = bins_.topLeftCorner(directions, used_).sum() / spectrum.time;
   // Where there are many, a last one that is not complete would disturb what makes all of them alike.
   const Index complete = in_last_ == width_ || used_ <= least_blocks ? used_ : used_ - 1;
   std::vector<Mean> means;
@@ -179,9 +180,10 @@ LyapunovSpectrum GrowthSeries::spectrum(Index structural) const {
 
 namespace {
 
-constexpr std::array<std::pair<AttractorKind, const char*>, 7> kind_words = {{
+constexpr std::array<std::pair<AttractorKind, const char*>, 8> kind_words = {{
     {AttractorKind::none, "none"},
     {AttractorKind::periodic, "periodic"},
+    {AttractorKind::neutral, "neutral"},
     {AttractorKind::quasi_periodic, "quasi-periodic"},
     {AttractorKind::chaotic, "chaotic"},
     {AttractorKind::rest, "rest"},
@@ -212,11 +214,25 @@ constexpr double small_bar = level::visible;
 
 }  // namespace
 
-ExponentSigns signs_of(const LyapunovSpectrum& spectrum) {
-  ExponentSigns signs;
+namespace {
+
+/// The frequency of events, or the largest exponent.
+double scale_of(const LyapunovSpectrum& spectrum) {
   double scale = spectrum.time > 0.0 ? static_cast<double>(spectrum.events) / spectrum.time : 0.0;
   for (const double exponent : spectrum.exponents)
     if (std::isfinite(exponent)) scale = std::max(scale, std::abs(exponent));
+  return scale;
+}
+
+}  // namespace
+
+bool keeps_volumes(const LyapunovSpectrum& spectrum, int dimension) {
+  return spectrum.exponents.size() == dimension && std::abs(spectrum.all) <= level::located * scale_of(spectrum);
+}
+
+ExponentSigns signs_of(const LyapunovSpectrum& spectrum) {
+  ExponentSigns signs;
+  const double scale = scale_of(spectrum);
   for (Index j = 0; j < spectrum.exponents.size(); ++j) {
     if (spectrum.is_structural(j)) continue;
     const double exponent = spectrum.exponents(j);

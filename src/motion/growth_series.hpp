@@ -34,6 +34,7 @@ struct LyapunovSpectrum {
   long events = 0;            ///< in that time
   /// Positions of exponents that are zero whatever the motion does: along the flow, of states that nothing depends on.
   std::vector<Eigen::Index> structural;
+  double all = 0.0;     ///< plain mean over the whole motion of the sum of all that were measured, none left out
   long tangential = 0;  ///< events met so slowly, |h_x f-| < 1e-7 |h_x| |f-|, that S loses its digits
   std::string fault;    ///< why nothing can be said, exponents are nan; "" when all went well
 
@@ -73,12 +74,16 @@ class GrowthSeries {
 enum class AttractorKind {
   none,            ///< not told: the motion has not settled, or its integration failed
   periodic,        ///< repeats itself: a signature and a period
+  neutral,         ///< repeats itself, and motions beside it neither approach nor leave: no attractor
   quasi_periodic,  ///< does not repeat itself, and no exponent is positive
   chaotic,         ///< an exponent is positive
   rest,            ///< the motion dies out
   chattering,      ///< events accumulate, or the contact lasts and the problem has no mode for it
   escape,          ///< no event any more: the motion leaves
 };
+
+/// A signature and a period belong to it.
+inline bool repeats(AttractorKind kind) { return kind == AttractorKind::periodic || kind == AttractorKind::neutral; }
 
 /// The word for people and files: "quasi-periodic".
 std::string to_string(AttractorKind kind);
@@ -96,6 +101,11 @@ struct ExponentSigns {
   int unclear = 0;
 };
 ExponentSigns signs_of(const LyapunovSpectrum& spectrum);
+
+/// Of all exponents of a system with so many states: volumes neither grow nor shrink, to 1e-6 of the frequency of
+/// events or of the largest exponent. Then nothing attracts. In coordinates in which they do both by turns this is not
+/// seen.
+bool keeps_volumes(const LyapunovSpectrum& spectrum, int dimension);
 
 /// chaotic (one is positive), quasi_periodic (one is zero, none positive), periodic (all negative, beside the one along
 /// the flow), rest (all negative and none along the flow); none where bars are too large to tell. This does not tell a

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <optional>
 
 #include "base/levels.hpp"
+#include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
+#include "model/scales.hpp"
 
 namespace tchat {
 
@@ -182,7 +186,89 @@ class ApproachTest {
   MatrixXd map_, weight_;
 };
 
+constexpr double singular = level::visible;       // Id - M, of its largest singular value
+constexpr double shares_beside[] = {0.05, 0.01};  // of the scale
+constexpr double closed_turn = 10.0;              // noise of turns
+constexpr int most_beside = 8;                    // steps of Newton's method
+
+/// Turns beside a state, in units of the candidate's scale.
+class TurnsBeside {
+ public:
+  TurnsBeside(const OrbitCandidate& candidate, const VectorXd& y, double uncertainty)
+      : candidate_(candidate), units_(candidate.scale.unaryExpr(&size_for_tolerance)), centre_(y) {
+    for (const Index k : candidate.ignorable) units_(k) = 1.0;
+    const std::optional<Turn> turn = turn_of(centre_);
+    if (!turn) return;
+    const SingularVectors found = singular_vectors(turn->matrix);
+    is_known_ = found.sizes.allFinite();
+    const double null = std::max(singular, 10.0 * uncertainty);
+    const Index nulls = is_known_ ? (found.sizes.array() <= null * found.sizes(0)).count() : 0;
+    right_ = found.right.rightCols(nulls);
+    left_ = found.left.rightCols(nulls);
+  }
+
+  bool is_known() const { return is_known_; }
+  Index nulls() const { return right_.cols(); }
+
+  /// |g| of the state that lies s beside in direction k, nothing where there is none.
+  std::optional<double> movement(Index k, double s) const {
+    const Index n = centre_.size(), m = nulls();
+    VectorXd z = s * right_.col(k), g = VectorXd::Zero(m);
+    for (int step = 0; step < most_beside; ++step) {
+      const std::optional<Turn> turn = turn_of(centre_ + units_.cwiseProduct(z));
+      if (!turn) return std::nullopt;
+      MatrixXd matrix = MatrixXd::Zero(n + m, n + m);
+      matrix << turn->matrix, left_, right_.transpose(), MatrixXd::Zero(m, m);
+      VectorXd right(n + m);
+      right << turn->residual - left_ * g, s * VectorXd::Unit(m, k) - right_.transpose() * z;
+      const VectorXd change = solve_with_complete_pivoting(matrix, right);
+      z += change.head(n);
+      g += change.tail(m);
+      if (!(z.norm() <= 3.0 * std::abs(s))) return std::nullopt;
+      if (change.norm() <= newton_converged * std::abs(s)) return g.norm();
+    }
+    return std::nullopt;
+  }
+
+ private:
+  struct Turn {
+    MatrixXd matrix;    // Id - M
+    VectorXd residual;  // R(y) - y
+  };
+
+  std::optional<Turn> turn_of(const VectorXd& y) const {
+    const SimulatedTurn turn = turn_from(candidate_, y, tolerance_of_turns, true);
+    if (!turn.fault.empty()) return std::nullopt;
+    const VectorXd inverse = units_.cwiseInverse();
+    Turn found{MatrixXd::Identity(y.size(), y.size()) - inverse.asDiagonal() * turn.derivative * units_.asDiagonal(),
+               inverse.cwiseProduct(without_ignorable(candidate_, turn.end() - y))};
+    for (const Index k : candidate_.ignorable) found.matrix.row(k) = VectorXd::Unit(y.size(), k).transpose();
+    return found;
+  }
+
+  const OrbitCandidate& candidate_;
+  VectorXd units_, centre_;
+  MatrixXd right_, left_;  // null vectors, n x m
+  bool is_known_ = false;
+};
+
 }  // namespace
+
+Neighbours neighbours_of(const OrbitCandidate& candidate, const VectorXd& y, double uncertainty) {
+  const TurnsBeside turns(candidate, y, uncertainty);
+  if (!turns.is_known()) return Neighbours::open;
+  if (turns.nulls() == 0) return Neighbours::isolated;
+  const double allowed = closed_turn * noise(candidate);
+  const auto closes = [&](Index k, double sign) {
+    return std::any_of(std::begin(shares_beside), std::end(shares_beside), [&](double share) {
+      const std::optional<double> moved = turns.movement(k, sign * share);
+      return moved && *moved <= allowed;
+    });
+  };
+  for (Index k = 0; k < turns.nulls(); ++k)
+    if (!closes(k, 1.0) || !closes(k, -1.0)) return Neighbours::open;
+  return Neighbours::closed;
+}
 
 MatrixXd decay_weight(MatrixXd m, const VectorXd& scale) {
   constexpr double vanished = std::numeric_limits<double>::min();

@@ -46,6 +46,23 @@ CorrectedOrbit correct_orbit(const OrbitCandidate& candidate);
 /// The turn from y as accurately as it is corrected, with the samples and marks of the candidate's settings.
 SimulatedTurn turn_of(const OrbitCandidate& candidate, const Eigen::VectorXd& y);
 
+/// Whether the orbits beside one with the derivative M of its turn are closed as well.
+enum class Neighbours {
+  isolated,  ///< no multiplier is 1: there are none
+  closed,    ///< one of a family, as where the energy is conserved
+  open,      ///< a multiplier is 1, and turns beside do not close: a fold is near, or nothing is an orbit here
+};
+
+/// Of y, which its turn takes to itself to the noise of integration. In every direction of a multiplier +1, where Id -
+/// M is singular in units of the scale, to 1e-4 or to ten times the `uncertainty` of multipliers, and both ways, by 5 %
+/// of the scale or else by 1 %, a state is looked for whose turn moves it along the left null vectors alone
+/// (Lyapunov-Schmidt). Turns are closed where it is not moved.
+///
+///     y* - R(y*) + W g = 0,  V'(y* - y) = s e_k:   n + m unknowns (y*, g), n + m equations
+///
+/// g is a bifurcation function: beside a fold it is s^2, at a cusp s^3, of a family 0.
+Neighbours neighbours_of(const OrbitCandidate& candidate, const Eigen::VectorXd& y, double uncertainty);
+
 /// W = sum over k of M^k' D^2 M^k, D = diag(1 / scale), 0 where that is not positive; not finite where M^k does not
 /// decay.
 Eigen::MatrixXd decay_weight(Eigen::MatrixXd m, const Eigen::VectorXd& scale);

@@ -222,7 +222,11 @@ VectorXd closing_step(const MatrixXd& derivative, const VectorXd& gap, const std
   MatrixXd matrix = MatrixXd::Identity(gap.size(), gap.size()) - derivative;
   for (const Eigen::Index k : ignorable) matrix.row(k) = VectorXd::Unit(gap.size(), k).transpose();
   const auto divide = sizes.cwiseInverse().asDiagonal();
-  return sizes.cwiseProduct(solve_with_complete_pivoting(divide * matrix * sizes.asDiagonal(), divide * gap));
+  const SingularVectors found = singular_vectors(divide * matrix * sizes.asDiagonal());
+  VectorXd along = found.left.transpose() * (divide * gap);
+  for (Eigen::Index k = 0; k < along.size(); ++k)
+    along(k) = found.sizes(k) <= level::differences * found.sizes(0) ? 0.0 : along(k) / found.sizes(k);
+  return sizes.cwiseProduct(found.right * along);
 }
 
 PeriodicOrbit shoot(const HybridSystem& system, const Signature& signature, const VectorXd& guess, const VectorXd& par,

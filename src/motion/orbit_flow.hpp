@@ -114,8 +114,8 @@ struct PeriodicOrbit {
   ReturnMap map;          ///< at `start`
 };
 
-/// dx of (Id - M) dx = gap, n, in sizes of states (n, 0 where not known), where a row that nothing depends on is dx_k =
-/// gap_k.
+/// The shortest dx, n, in sizes of states (n, 0 where not known) with (Id - M) dx = gap, as far as Id - M is not
+/// singular to 1e-8: the orbit of a family that is nearest. Of a state that nothing depends on dx_k = gap_k.
 Eigen::VectorXd closing_step(const Eigen::MatrixXd& derivative, const Eigen::VectorXd& gap,
                              const std::vector<Eigen::Index>& ignorable, const Eigen::VectorXd& sizes);
 

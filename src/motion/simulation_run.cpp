@@ -98,6 +98,25 @@ bool is_ignored(const std::vector<bool>& ignorable, Eigen::Index i) {
   return k < ignorable.size() && ignorable[k];
 }
 
+/// Does a function have the same value where state c is another one, but for that state behind a jump, which moves with
+/// it? A derivative does not tell: that of mod(x, 1) is the one of x.
+bool only_moves_with(const HybridSystem& system, FunctionKind kind, int index, const VectorXd& x, int c, double size,
+                     const VectorXd& par) {
+  const Eigen::Index rows = kind == FunctionKind::event ? 1 : x.size();
+  VectorXd before(rows), after(rows);
+  system.value(kind, index, x.data(), par.data(), before.data());
+  VectorXd moved = x;
+  for (const double share : {0.37, -1.3, 5.1}) {  // of its size
+    moved(c) = x(c) + share * size;
+    system.value(kind, index, moved.data(), par.data(), after.data());
+    if (kind == FunctionKind::jump) after(c) -= moved(c) - x(c);
+    VectorXd least = level::negligible * before.cwiseAbs();
+    if (kind == FunctionKind::jump) least(c) += level::negligible * std::abs(moved(c));
+    if (!((after - before).cwiseAbs().array() <= least.array()).all()) return false;
+  }
+  return true;
+}
+
 /// Clears the flags of the states that a function depends on; a jump may only pass a state on.
 void keep_independent(const HybridSystem& system, FunctionKind kind, const VectorXd& x, const VectorXd& par,
                       std::vector<bool>& flags) {
@@ -114,7 +133,9 @@ void keep_independent(const HybridSystem& system, FunctionKind kind, const Vecto
     const MatrixXd terms = dx.cwiseAbs() * sizes.asDiagonal();
     const VectorXd least = rounding * (terms.rowwise().sum() + value.cwiseAbs());
     for (int c = 0; c < n; ++c)
-      if (!(terms.col(c).array() <= least.array()).all()) flags[static_cast<std::size_t>(c)] = false;
+      if (!(terms.col(c).array() <= least.array()).all() ||
+          (flags[static_cast<std::size_t>(c)] && !only_moves_with(system, kind, index, x, c, sizes(c), par)))
+        flags[static_cast<std::size_t>(c)] = false;
   }
 }
 
@@ -193,6 +214,31 @@ bool Recurrence::repeats(std::size_t period) const {
   return repeats_events(period) && difference(period) <= tolerance_ && scale(2 * period).maxCoeff() > 0.0;
 }
 
+void RangeGrowth::add(const SimulatedSegment& segment) {
+  now_ = events_ == 0 ? Extremes{segment.low, segment.high}
+                      : Extremes{now_.low.cwiseMin(segment.low), now_.high.cwiseMax(segment.high)};
+  ++events_;
+  if ((events_ & (events_ - 1)) == 0) doubled_.push_back(now_);
+}
+
+double RangeGrowth::growth(Eigen::Index state) const {
+  const Extremes& then = before();
+  return (now_.high(state) - now_.low(state)) / (then.high(state) - then.low(state));
+}
+
+std::optional<Eigen::Index> RangeGrowth::growing(const std::vector<bool>& left_out) const {
+  constexpr double share = 0.25, least = level::located;  // of a range; of the state
+  if (events_ < 2) return std::nullopt;
+  const Extremes& then = before();
+  for (Eigen::Index i = 0; i < now_.low.size(); ++i) {
+    const double range = now_.high(i) - now_.low(i);
+    const double size = std::max(std::abs(now_.low(i)), std::abs(now_.high(i)));
+    if (!is_ignored(left_out, i) && range > least * size && range > (1.0 + share) * (then.high(i) - then.low(i)))
+      return i;
+  }
+  return std::nullopt;
+}
+
 std::vector<bool> ignorable_states(const HybridSystem& system, const std::vector<VectorXd>& points,
                                    const VectorXd& par) {
   std::vector<bool> flags(static_cast<std::size_t>(system.dimension()), !points.empty());
@@ -205,58 +251,14 @@ std::vector<bool> ignorable_states(const HybridSystem& system, const std::vector
 namespace {
 
 constexpr double never = 1e300;
-constexpr std::size_t points_for_ignorable = 6;
-
-/// Gathers what a simulation shows after its transient.
-class Observation {
- public:
-  Observation(const HybridSimulation& simulation, const SimulationPlan& plan, SimulationResult& result)
-      : simulation_(simulation), plan_(plan), result_(result), recurrence_(plan.max_period, plan.recognition) {}
-
-  void add(const SimulatedSegment& segment) {
-    count_marks(segment);
-    if (segment.ended_by != SegmentEnd::event) return;
-    result_.simultaneous += segment.simultaneous.empty() ? 0 : 1;
-    if (points_.size() < points_for_ignorable) find_ignorable(segment);
-    recurrence_.add(segment);
-    turn_.push_back(segment);
-    if (turn_.size() > static_cast<std::size_t>(plan_.max_period)) turn_.pop_front();
+void count_marks(const SimulatedSegment& segment, SimulationResult& result) {
+  for (const SegmentMark& mark : segment.marks) {
+    if (mark.kind == SegmentMark::Kind::contact) ++result.contacts;
+    if (mark.kind == SegmentMark::Kind::beyond) ++result.beyond;
+    if (mark.kind == SegmentMark::Kind::violation && result.violations++ == 0) result.first_violation = segment;
   }
-
-  bool repeats() const { return recurrence_.period().has_value(); }
-
-  void finish() {
-    const auto period = recurrence_.period();
-    if (result_.last.ended_by == SegmentEnd::failed || !period) return;
-    result_.turn.assign(turn_.end() - *period, turn_.end());
-  }
-
- private:
-  void count_marks(const SimulatedSegment& segment) {
-    for (const SegmentMark& mark : segment.marks) {
-      if (mark.kind == SegmentMark::Kind::contact) ++result_.contacts;
-      if (mark.kind == SegmentMark::Kind::beyond) ++result_.beyond;
-      if (mark.kind == SegmentMark::Kind::violation && result_.violations++ == 0) result_.first_violation = segment;
-    }
-  }
-
-  void find_ignorable(const SimulatedSegment& segment) {
-    points_.push_back(segment.start);
-    points_.push_back(segment.end);
-    const std::vector<bool> flags = ignorable_states(simulation_.system(), points_, simulation_.parameters());
-    recurrence_.ignore(flags);
-    result_.ignorable.clear();
-    for (std::size_t i = 0; i < flags.size(); ++i)
-      if (flags[i]) result_.ignorable.push_back(static_cast<Eigen::Index>(i));
-  }
-
-  const HybridSimulation& simulation_;
-  const SimulationPlan& plan_;
-  SimulationResult& result_;
-  Recurrence recurrence_;
-  std::deque<SimulatedSegment> turn_;    // the last max_period
-  std::vector<Eigen::VectorXd> points_;  // where functions were looked at
-};
+  result.simultaneous += segment.simultaneous.empty() ? 0 : 1;
+}
 
 }  // namespace
 
@@ -264,7 +266,6 @@ SimulationResult run_simulation(HybridSimulation& simulation, const SimulationPl
                                 const std::function<void(const SimulatedSegment&)>& kept,
                                 const std::function<bool(const SimulatedSegment&)>& has_settled) {
   SimulationResult result;
-  Observation observation(simulation, plan, result);
   ChatteringDetector chattering;
   DecayDetector decay;
   const bool until_it_repeats = !plan.time && !plan.events;
@@ -277,7 +278,7 @@ SimulationResult run_simulation(HybridSimulation& simulation, const SimulationPl
     result.last = simulation.next(end_time.value_or(never));
     if (!is_transient) {
       kept(result.last);
-      observation.add(result.last);
+      count_marks(result.last, result);
     }
     if (result.last.ended_by != SegmentEnd::event) break;
     ++result.events;
@@ -287,9 +288,8 @@ SimulationResult run_simulation(HybridSimulation& simulation, const SimulationPl
     decay.add(result.last.index, result.last.event_velocity);
     result.dies_out = until_it_repeats && decay.dies_out();
     if (result.accumulation || result.dies_out) break;
-    if (until_it_repeats && !is_transient && (has_settled ? has_settled(result.last) : observation.repeats())) break;
+    if (until_it_repeats && !is_transient && has_settled && has_settled(result.last)) break;
   }
-  if (!result.accumulation && !result.dies_out) observation.finish();
   return result;
 }
 

@@ -124,6 +124,27 @@ class Recurrence {
   std::deque<End> ends_;  // the last 2 max_period
 };
 
+/// Does a motion stay within bounds? Of a motion on an attractor the range has been seen after a while; of one that
+/// grows like a power of time it is larger by a share each time that the number of events has doubled.
+class RangeGrowth {
+ public:
+  void add(const SimulatedSegment& segment);
+  /// A state, from 0, whose range has grown by a quarter since half of the events at least; none of `left_out`.
+  std::optional<Eigen::Index> growing(const std::vector<bool>& left_out) const;
+  /// Range of a state now, in ranges that it had then.
+  double growth(Eigen::Index state) const;
+
+ private:
+  struct Extremes {
+    Eigen::VectorXd low, high;
+  };
+  /// After so many events as are half of those now, or a quarter.
+  const Extremes& before() const { return doubled_[doubled_.size() - 2]; }
+  Extremes now_;
+  std::vector<Extremes> doubled_;  // after 1, 2, 4, ... events
+  long events_ = 0;
+};
+
 /// Which states nothing depends on: zero columns in f_x and h_x, and a unit column in g_x, of all functions at
 /// `points`.
 std::vector<bool> ignorable_states(const HybridSystem& system, const std::vector<Eigen::VectorXd>& points,
@@ -149,8 +170,10 @@ struct SimulationResult {
   long contacts = 0, violations = 0, beyond = 0, simultaneous = 0;  ///< after the transient
   SimulatedSegment last;                                            ///< the last segment, whatever ended it
   std::optional<SimulatedSegment> first_violation;                  ///< with its marks
-  std::vector<SimulatedSegment> turn;   ///< the segments of one period, in order; empty when nothing was recognised
-  std::vector<Eigen::Index> ignorable;  ///< states that nothing depends on, from 0
+  /// The segments of one period, in order, and the states that nothing depends on, from 0: of whoever has looked for
+  /// them (motion/attractor_search.hpp).
+  std::vector<SimulatedSegment> turn;
+  std::vector<Eigen::Index> ignorable;
   std::optional<ChatteringDetector::Accumulation> accumulation;
   bool dies_out =
       false;  ///< the last events' h_x f is next to nothing of what it was; not looked for in a given length
@@ -159,7 +182,7 @@ struct SimulationResult {
 };
 
 /// `kept` is handed every segment after the transient. Without a wanted length the simulation ends where `has_settled`,
-/// asked after each event behind the transient, says so; by itself where the motion repeats itself.
+/// asked after each event behind the transient, says so.
 SimulationResult run_simulation(HybridSimulation& simulation, const SimulationPlan& plan,
                                 const std::function<void(const SimulatedSegment&)>& kept,
                                 const std::function<bool(const SimulatedSegment&)>& has_settled = {});

@@ -24,7 +24,7 @@ constexpr double to_next_of_branch = 1.0;  // where a branch joins them
 constexpr double bend = 0.5;               // of a branch: second difference of its states, as a share of the first
 constexpr std::size_t most_compared = 1000;
 
-bool repeats(const AttractorSample& sample) { return sample.kind == AttractorKind::periodic; }
+bool repeats(const AttractorSample& sample) { return repeats(sample.kind); }
 
 double size_of(const AttractorSample& sample) {
   return sample.identity.size() > 0 ? sample.identity.cwiseAbs().maxCoeff() : 0.0;
@@ -101,12 +101,29 @@ class Numberer {
   Numberer(const std::vector<SampleRecord>& records, const std::vector<AttractorSample>& known)
       : records_(records), known_(known) {
     numbers_.of_record.assign(records.size(), 0);
+    numbers_.left_after.assign(records.size(), 0);
   }
 
   const AttractorSample& sample(std::size_t r) const {
     const AttractorSample& own = records_[r].sample;
     return own.known > 0 ? known_[static_cast<std::size_t>(own.known) - 1] : own;
   }
+
+  /// Among records of one parameter value: chaotic motions seen for no longer than others have taken to settle.
+  void withhold_transients(const std::vector<std::size_t>& records) {
+    constexpr double share = 0.5;
+    long longest = 0;
+    for (const std::size_t r : records)
+      if (sample(r).kind != AttractorKind::chaotic && is_attractor(sample(r).kind))
+        longest = std::max(longest, records_[r].sample.events);
+    for (const std::size_t r : records)
+      if (sample(r).kind == AttractorKind::chaotic &&
+          static_cast<double>(longest) >= share * static_cast<double>(records_[r].sample.events))
+        numbers_.left_after[r] = longest;
+  }
+
+  /// Has the record an attractor of its own?
+  bool counts(std::size_t r) const { return is_attractor(sample(r).kind) && numbers_.left_after[r] == 0; }
 
   int new_number(std::size_t r) {
     const AttractorSample& from = sample(r);
@@ -133,7 +150,7 @@ class Numberer {
     std::vector<Group> groups;
     std::map<int, std::size_t> of_known;
     for (const std::size_t r : records) {
-      if (!is_attractor(sample(r).kind)) continue;
+      if (!counts(r)) continue;
       const int known = records_[r].sample.known;
       std::size_t g = groups.size();
       if (const auto at = of_known.find(known); known > 0 && at != of_known.end()) {
@@ -195,7 +212,7 @@ class Numberer {
     std::map<std::pair<AttractorKind, Signature>, int> numbers;
     for (std::size_t r = 0; r < records_.size(); ++r) {
       const AttractorSample& at = sample(r);
-      if (!is_attractor(at.kind)) continue;
+      if (!counts(r)) continue;
       int& number = numbers[{at.kind, at.signature}];
       if (number == 0) number = new_number(r);
       numbers_.of_record[r] = number;
@@ -263,7 +280,10 @@ AttractorNumbers number_attractors(const std::vector<SampleRecord>& records, con
   std::map<std::size_t, std::vector<std::size_t>> values;
   for (std::size_t r = 0; r < records.size(); ++r) values[parameter_position(grid, records[r].index)].push_back(r);
   std::vector<std::vector<Numberer::Group>> groups;
-  for (const auto& [position, at] : values) groups.push_back(numberer.groups(at));
+  for (const auto& [position, at] : values) {
+    numberer.withhold_transients(at);
+    groups.push_back(numberer.groups(at));
+  }
   for (std::size_t k = 0; k < groups.size(); ++k) numberer.go_on(groups, k);
   return numberer.take();
 }

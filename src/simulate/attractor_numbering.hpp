@@ -28,6 +28,9 @@ std::vector<AttractorSample> distinct_attractors(const std::vector<SampleRecord>
 
 struct AttractorNumbers {
   std::vector<int> of_record;  ///< 0: none
+  /// Of a chaotic motion that is no attractor, as others at the same values have left what they were on after as many
+  /// events, or half of them: those events; 0 of others. A transient that is chaotic ends at random.
+  std::vector<long> left_after;
   std::vector<SweepAttractor> attractors;
 };
 

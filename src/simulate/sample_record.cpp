@@ -15,6 +15,7 @@ namespace {
 
 /// Before what a line has only if it was asked for; no message begins with it.
 constexpr const char* largest_values = "@max";
+constexpr const char* events_seen = "@events";
 
 /// FNV-1a: tells a line that was cut or damaged.
 std::uint64_t line_hash(std::string_view text) {
@@ -171,6 +172,10 @@ std::string record_line(const SampleRecord& record) {
     line.word(largest_values);
     line.matrix(sample.largest);
   }
+  if (sample.events > 0) {
+    line.word(events_seen);
+    line.integer(sample.events);
+  }
   return line.finished(one_line(sample.message));
 }
 
@@ -202,6 +207,10 @@ std::optional<SampleRecord> read_record(const std::string& line) {
   if (reader.rest().starts_with(std::string(largest_values) + ' ')) {
     reader.word();
     sample.largest = reader.matrix();
+  }
+  if (reader.rest().starts_with(std::string(events_seen) + ' ')) {
+    reader.word();
+    sample.events = reader.integer();
   }
   sample.message = reader.rest();
   if (!reader.ok() || !kind) return std::nullopt;

@@ -54,6 +54,7 @@ struct AttractorSample {
   Eigen::MatrixXd identity;
   Eigen::VectorXd range;  ///< of each state over the attractor, the scale of differences; n
   MotionState last;       ///< to go on from at a neighbouring value; x is empty where there is nothing to go on from
+  long events = 0;        ///< over which it was seen, from the start to the verdict; 0: not told
   int known = 0;          ///< number, from 1, of the known attractor that has captured it, which is then all there is
   std::string message;    ///< why it has not settled, one line; empty when there is nothing to say
 };

@@ -14,6 +14,8 @@
 #include "files/replaced_file.hpp"
 #include "files/run_files.hpp"
 #include "files/simulation_files.hpp"
+#include "model/events.hpp"
+#include "model/scales.hpp"
 #include "motion/attractor_search.hpp"
 #include "motion/found_orbit.hpp"
 #include "motion/growth_series.hpp"
@@ -34,6 +36,7 @@ using Eigen::VectorXd;
 constexpr long most_measured = 100000;  // events
 constexpr long most_undecided = 16384;  // however small the bars, while they do not tell what the motion is
 constexpr long least_measured = 1024;   // so that weighted means of periodic motion have converged
+constexpr double bars_of_own = 3.0;     // within which exponents are those of an orbit
 
 /// With the digits that the bar leaves.
 std::string value_text(double value, double error) {
@@ -52,30 +55,65 @@ std::string bar_text(double error) {
 
 std::string counted(int n, const char* what) { return fmt::format("{} {} exponent{}", n, what, n == 1 ? "" : "s"); }
 
-std::string meaning(const LyapunovSpectrum& spectrum, int section, bool orbit_attracts, const std::string& doubt) {
+std::string zeros_text(const LyapunovSpectrum& spectrum, int zeros, int dimension) {
+  const std::string found = counted(zeros, "zero") + ", none positive";
+  if (keeps_volumes(spectrum, dimension))
+    return fmt::format("{}, and volumes are kept: regular motion, on no attractor.", found);
+  return fmt::format("{}: as of quasi-periodic motion on a torus of dimension {}, if it does not repeat itself.", found,
+                     zeros);
+}
+
+/// The orbit that the motion keeps to is not stable, and the exponents are its own.
+bool are_of_orbit(const LyapunovSpectrum& spectrum, const SettledOrbit& orbit) {
+  double period = 0.0;
+  for (const SimulatedSegment& segment : orbit.turn) period += segment.duration;
+  double largest = -std::numeric_limits<double>::infinity();
+  for (Index j = 0; j < spectrum.exponents.size(); ++j)
+    if (!spectrum.is_structural(j)) largest = std::max(largest, spectrum.exponents(j));
+  const double expected = orbit.multipliers.empty() ? 0.0 : std::log(std::abs(orbit.multipliers.front())) / period;
+  return std::abs(largest - expected) <= level::visible * std::abs(expected) + bars_of_own * spectrum.accuracy();
+}
+
+std::string meaning(const LyapunovSpectrum& spectrum, int section, int dimension, const MotionEvidence& evidence) {
   const bool has_flow = !spectrum.structural.empty() && section == 0;
   const char* const others = has_flow ? "One zero exponent, the others negative" : "All exponents are negative";
   const ExponentSigns signs = signs_of(spectrum);
-  if (orbit_attracts && (signs.positive > 0 || signs.zero > 0 || signs.unclear > 0))
-    return "A stable periodic orbit, by its multipliers; the exponents have not converged to ln |multiplier| / period "
-           "yet (--time, --events, --accuracy).";
-  if (orbit_attracts) return fmt::format("{}: a stable periodic orbit.", others);
-  if (signs.positive > 0 && !doubt.empty())
-    return fmt::format("{}, but undecided: {}.", counted(signs.positive, "positive"), doubt);
+  if (evidence.orbit && evidence.orbit->stability == OrbitStability::stable)
+    return signs.positive + signs.zero + signs.unclear == 0
+               ? fmt::format("{}: a stable periodic orbit.", others)
+               : "A stable periodic orbit, by its multipliers; the exponents have not converged to ln |multiplier| / "
+                 "period yet (--time, --events, --accuracy).";
+  if (evidence.orbit && section == 0 && are_of_orbit(spectrum, *evidence.orbit))
+    return fmt::format("They are those of the orbit that the motion keeps to, which is {}.",
+                       evidence.orbit->stability == OrbitStability::neutral ? "neutral" : "not stable");
+  if (!evidence.doubt.empty())
+    return fmt::format("{}undecided: {}.", signs.positive > 0 ? counted(signs.positive, "positive") + ", but " : "",
+                       evidence.doubt);
   if (signs.positive > 0) return fmt::format("{}: the motion is chaotic.", counted(signs.positive, "positive"));
   if (signs.unclear > 0)
     return "Undecided: the bars are too large to tell what the motion is; a longer one has smaller bars (--time, "
            "--events, --accuracy).";
-  if (signs.zero > 0)
-    return fmt::format(
-        "{}, none positive: quasi-periodic motion on a torus of dimension {}, if it does not repeat itself.",
-        counted(signs.zero + (has_flow ? 1 : 0), "zero"), signs.zero + 1);
+  if (signs.zero > 0) return zeros_text(spectrum, signs.zero + (has_flow ? 1 : 0), dimension);
   if (signs.negative > 0 && (has_flow || section != 0))
-    return fmt::format("{}: a stable periodic orbit, of a longer period than looked for or not reached yet.", others);
-  if (signs.negative > 0) return "All exponents are negative: the trajectory converges to an equilibrium.";
+    return fmt::format(
+        "{}, as of a stable periodic orbit, but undecided: none is approached that is short enough to be "
+        "looked for (--max-period, --transient-events).",
+        others);
+  if (signs.negative > 0) return "All exponents are negative, as where a trajectory converges to an equilibrium.";
   return "The largest exponent is zero: not chaotic; one more (--lyapunov 2) distinguishes periodic from "
          "quasi-periodic "
          "motion.";
+}
+
+/// Of exponents on an orbit with known multipliers, those that rounding leaves a value.
+void widen_bars(LyapunovSpectrum& spectrum, const FoundOrbit& orbit) {
+  std::size_t k = 0;
+  for (Index j = 0; j < spectrum.exponents.size(); ++j) {
+    if (spectrum.is_structural(j) || !std::isfinite(spectrum.exponents(j))) continue;
+    if (k == orbit.multipliers.size() || !(std::abs(orbit.multipliers[k]) > level::differences)) return;
+    const double expected = std::log(std::abs(orbit.multipliers[k++])) / orbit.map.period;
+    spectrum.errors(j) = std::max(spectrum.errors(j), std::abs(spectrum.exponents(j) - expected));
+  }
 }
 
 /// The first of them is that along the flow; there is none on a section.
@@ -108,13 +146,14 @@ std::string ended_text(const SimulationResult& result) {
 
 /// Goes on until the bars are small enough, to the segment `last`; false when it was ended otherwise than by an event.
 bool go_on(HybridSimulation& simulation, LyapunovAccumulator& exponents, double accuracy, ProgressLine& line,
-           SimulatedSegment& last) {
+           const std::function<void(const SimulatedSegment&)>& passed, SimulatedSegment& last) {
   exponents.begin();
   long next_look = least_measured;
   for (long done = 1; done <= most_measured; ++done) {
     last = simulation.next(std::numeric_limits<double>::max());
     exponents.pass(last);
     if (last.ended_by != SegmentEnd::event) return false;
+    passed(last);
     if (line.is_due()) {
       const LyapunovSpectrum now = exponents.spectrum();
       line.show(fmt::format("{} events for exponents, the largest {}{}, bars up to {:.2g} ", done,
@@ -157,7 +196,7 @@ std::unique_ptr<LyapunovAccumulator> exponents_to_measure(const SimulationReques
 }
 
 std::string spectrum_text(const HybridSystem& system, const LyapunovSpectrum& spectrum, int section,
-                          bool orbit_attracts, const std::string& doubt) {
+                          const MotionEvidence& evidence) {
   if (!spectrum.fault.empty()) return fmt::format("No Lyapunov exponents: {}.\n", spectrum.fault);
   std::string text =
       section == 0 ? fmt::format("Lyapunov exponents per unit of time, of {} events in a time of {:.6g}\n",
@@ -169,12 +208,12 @@ std::string spectrum_text(const HybridSystem& system, const LyapunovSpectrum& sp
                         bar_text(spectrum.errors(j)),
                         spectrum.is_structural(j) ? structural_text(spectrum, section, j) : "");
   text += losses(spectrum);
-  return text + "  " + meaning(spectrum, section, orbit_attracts, doubt) + "\n";
+  return text + "  " + meaning(spectrum, section, system.dimension(), evidence) + "\n";
 }
 
 std::string exponents_of(const SimulationRequest& request, const SimulationResult& result, HybridSimulation& simulation,
-                         LyapunovAccumulator& exponents, bool orbit_attracts, const SimulationSettings& settings,
-                         std::ostream* progress) {
+                         LyapunovAccumulator& exponents, AttractorSearch& search, const FoundOrbit& orbit,
+                         const SimulationSettings& settings, std::ostream* progress) {
   const HybridSystem& system = simulation.system();
   const bool goes_on = !has_wanted_length(request.plan);
   if (goes_on && (result.last.ended_by != SegmentEnd::event || result.accumulation || result.dies_out))
@@ -183,17 +222,22 @@ std::string exponents_of(const SimulationRequest& request, const SimulationResul
   SimulatedSegment last = result.last;
   if (goes_on) {
     ProgressLine line(progress);
-    if (!go_on(simulation, exponents, request.accuracy, line, last))
+    const auto passed = [&](const SimulatedSegment& segment) { search.add(simulation, segment); };
+    if (!go_on(simulation, exponents, request.accuracy, line, passed, last))
       remark = "  The simulation has ended before the bars were small enough.\n";
   }
-  const LyapunovSpectrum spectrum = exponents.spectrum();
+  LyapunovSpectrum spectrum = exponents.spectrum();
+  if (search.orbit() && search.orbit()->stability == OrbitStability::stable && orbit.converged && request.section == 0)
+    widen_bars(spectrum, orbit);
   if (goes_on && remark.empty() && spectrum.accuracy() > request.accuracy)
     remark =
         fmt::format("  After {} events a bar is still above {:g} (--accuracy); --events or --time simulate longer.\n",
                     spectrum.events, request.accuracy);
-  const std::string doubt =
-      orbit_attracts ? "" : doubt_of_chaos(simulation, last, exponents, spectrum, request.section, settings);
-  return spectrum_text(system, spectrum, request.section, orbit_attracts, doubt) + remark;
+  MotionEvidence evidence{search.orbit(), ""};
+  if (!evidence.orbit) evidence.doubt = search.unbounded(system);
+  if (!evidence.orbit && evidence.doubt.empty())
+    evidence.doubt = doubt_of_chaos(simulation, last, exponents, spectrum, request.section, settings);
+  return spectrum_text(system, spectrum, request.section, evidence) + remark;
 }
 
 namespace {
@@ -353,10 +397,23 @@ namespace {
 
 /// The turn of `result` is that of the orbit which the motion has settled on, if it has.
 void take_orbit(AttractorSearch& search, const HybridSimulation& simulation, SimulationResult& result) {
-  result.turn.clear();
   if (result.accumulation || result.dies_out || result.last.ended_by == SegmentEnd::failed) return;
   if (!search.orbit() && !search.equilibrium()) search.conclude(simulation);
   if (search.orbit()) result.turn = search.orbit()->turn;
+}
+
+/// Where the orbit meets this event, next to a state near it: shooting is more accurate than the search.
+VectorXd end_on_orbit(const HybridSimulation& simulation, const FoundOrbit& orbit, const VectorXd& near) {
+  const IndexVector& event = simulation.last_event();
+  std::optional<VectorXd> best;
+  const auto distance = [&](const VectorXd& x) { return length_in_sizes(x - near, orbit.sizes); };
+  for (std::size_t s = 0; s < orbit.signature.size(); ++s)
+    if (const VectorXd& end = orbit.map.segments[s].end;
+        orbit.signature[s] == event && (!best || distance(end) < distance(*best)))
+      best = end;
+  if (!best) return near;
+  return onto_surface(simulation.system(), event.event, no_function, *best, simulation.parameters().data(), orbit.sizes)
+      .value_or(near);
 }
 
 /// The equilibrium that the motion comes to, at events or after the last one.
@@ -421,6 +478,7 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
                             [&](const SimulatedSegment& segment) { return search.has_settled(simulation, segment); });
   }
   files.finish();
+  result.ignorable = search.ignorable();
   RecordedPeriod period;
   if (request.refine) {
     period = recorded_period(recorded, request.plan.events, result.ignorable);
@@ -449,7 +507,7 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
   } else if (rest = equilibrium_of(search, simulation, result.last); rest) {
     say(rest_text(*rest));
   } else {
-    say(no_orbit_text(result, request.plan, search));
+    say(no_orbit_text(system, result, request.plan, search));
   }
   const bool is_attracting = orbit.converged && orbit.stability() == OrbitStability::stable;
   if (exponents && search.equilibrium() && !has_wanted_length(request.plan)) {
@@ -458,8 +516,10 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
   } else if (exponents) {
     // Those of the orbit itself, not of the way to it.
     HybridSimulation measured =
-        is_attracting && search.orbit() ? HybridSimulation(simulation, search.orbit()->end, settings) : simulation;
-    say(exponents_of(request, result, measured, *exponents, is_attracting, settings, progress));
+        is_attracting && search.orbit()
+            ? HybridSimulation(simulation, end_on_orbit(simulation, orbit, search.orbit()->end), settings)
+            : simulation;
+    say(exponents_of(request, result, measured, *exponents, search, orbit, settings, progress));
   }
   say(written_text(output, files));
   if (result.last.ended_by == SegmentEnd::failed) {

@@ -3,9 +3,11 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <ostream>
 #include <string>
 
+#include "motion/attractor_search.hpp"
 #include "motion/lyapunov_exponents.hpp"
 #include "simulate/simulation_start.hpp"
 
@@ -21,16 +23,22 @@ std::unique_ptr<LyapunovAccumulator> exponents_to_measure(const SimulationReques
                                                           const Eigen::VectorXd& par);
 
 /// Without a wanted length the simulation goes on from where `result` left it, until the bars are small enough, at most
-/// 100000 events. The exponents for people, with a line that says what they mean; `orbit_attracts` when the motion has
-/// settled on a stable periodic orbit. `settings` are those of the simulation. `progress` may be null.
+/// 100000 events. The exponents for people, with a line that says what they mean, given what `search` has found; it is
+/// shown what follows. On a stable `orbit` that shooting has found bars are no less than the distance from ln |mu| / T:
+/// a weakly stable motion is off by the error of its integration by its exponent. `settings` are those of the
+/// simulation. `progress` may be null.
 std::string exponents_of(const SimulationRequest& request, const SimulationResult& result, HybridSimulation& simulation,
-                         LyapunovAccumulator& exponents, bool orbit_attracts, const SimulationSettings& settings,
-                         std::ostream* progress);
+                         LyapunovAccumulator& exponents, AttractorSearch& search, const FoundOrbit& orbit,
+                         const SimulationSettings& settings, std::ostream* progress);
 
-/// The table of them and what they mean; `orbit_attracts` when the motion has settled on a stable periodic orbit,
-/// `doubt` where a positive exponent may be no chaos.
+/// What is known of a motion beside its exponents.
+struct MotionEvidence {
+  std::optional<SettledOrbit> orbit;  ///< that it has settled on, or keeps to
+  std::string doubt;                  ///< why the exponents do not tell what the motion is; ""
+};
+/// The table of exponents and what they mean.
 std::string spectrum_text(const HybridSystem& system, const LyapunovSpectrum& spectrum, int section,
-                          bool orbit_attracts, const std::string& doubt = "");
+                          const MotionEvidence& evidence);
 
 // `tchat simulate` without the command line: constants -> plugin -> start -> simulation -> orbit -> files.
 

@@ -34,6 +34,7 @@ constexpr double every_minimum = 1e300;        // as a share of the largest valu
 constexpr std::size_t samples_following = 12;  // of a segment, among which the hand-over is chosen
 constexpr long first_decision = 64;            // events after which exponents may tell the kind of a motion
 constexpr long last_decision = 4096;
+constexpr long events_of_volumes = 64;
 constexpr long events_of_exponents = 512;     // of an attractor whose kind is known
 constexpr double same_time = level::located;  // as a share of the longest segment
 constexpr std::size_t identity_points = 400;  // of a motion that does not repeat itself
@@ -78,9 +79,11 @@ class SampleRun {
     HybridSimulation simulation(simulation_rule(request, setup_.constants, system_, start_, par_), start_, par_,
                                 with_exponents);
     settle(simulation);
+    sample_.events = events_;
     if (sample_.known > 0) return std::move(sample_);
     if (is_open_) tell_kind(simulation, exponents);
-    if (sample_.kind == AttractorKind::periodic && setup_.recording.exponents > 0) {
+    sample_.events = events_;
+    if (repeats(sample_.kind) && setup_.recording.exponents > 0) {
       const auto turns = 1 + events_of_exponents / static_cast<long>(kept_.size());
       HybridSimulation on_orbit(simulation, search_.orbit()->end, with_exponents);
       go_on(on_orbit, exponents, turns * static_cast<long>(kept_.size()));
@@ -139,6 +142,7 @@ class SampleRun {
         const SimulatedSegment segment = simulation.next(never);
         if (segment.ended_by == SegmentEnd::interrupted) throw SampleInterrupted();
         exponents.pass(segment);
+        ++events_;
         if (segment.ended_by != SegmentEnd::event) {
           sample_.message = "it has ended while its exponents were computed: " + segment.message;
           return;
@@ -152,25 +156,39 @@ class SampleRun {
       if (!tells && decision < last_decision) continue;
       if (search_.conclude(simulation)) return keep_settled();
       std::string doubt = search_.doubt();
-      bool is_told = tells && !search_.is_near_unstable_orbit();
+      if (doubt.empty()) doubt = search_.unbounded(system_);
+      bool is_told = tells && doubt.empty() && !search_.is_near_unstable_orbit();
       if (is_told && kind == AttractorKind::chaotic) {
         doubt = doubt_of_chaos(simulation, end, exponents, spectrum);
         is_told = doubt.empty();
       }
       if (!is_told && decision < last_decision) continue;
       keep_exponents(spectrum);
+      if (is_told && kind == AttractorKind::quasi_periodic && are_volumes_kept(simulation, end)) {
+        sample_.message = "regular motion that does not repeat itself, and volumes are kept";
+        return;
+      }
       sample_.kind = is_told ? kind : AttractorKind::none;
       if (!is_told) sample_.message = undecided_text(spectrum, kind, doubt);
       return;
     }
   }
 
+  bool are_volumes_kept(const HybridSimulation& simulation, const VectorXd& end) {
+    SimulationSettings settings = plain_settings();
+    LyapunovAccumulator all(system_, par_, {system_.dimension(), 0, settings.flow});
+    all.attach(settings);
+    HybridSimulation going_on(simulation, end, settings);
+    return go_on(going_on, all, events_of_volumes) && keeps_volumes(all.spectrum(), system_.dimension());
+  }
+
   /// "" where a positive exponent is that of chaos.
   std::string doubt_of_chaos(const HybridSimulation& simulation, const VectorXd& end,
-                             const LyapunovAccumulator& exponents, const LyapunovSpectrum& spectrum) const {
+                             const LyapunovAccumulator& exponents, const LyapunovSpectrum& spectrum) {
     const ChaosEvidence evidence =
         chaos_evidence(simulation, end, exponents.growing_direction(), spectrum.exponents.maxCoeff(), plain_settings());
     if (evidence.was_interrupted) throw SampleInterrupted();
+    events_ += evidence.is_chaotic ? evidence.events : 0;
     return evidence.doubt;
   }
 
@@ -244,7 +262,16 @@ class SampleRun {
     }
     const std::vector<SimulatedSegment>& turn = search_.orbit()->turn;
     kept_.assign(turn.begin(), turn.end());
-    if (search_.orbit()->stability != OrbitStability::unstable) return AttractorKind::periodic;
+    const SettledOrbit& orbit = *search_.orbit();
+    if (orbit.stability == OrbitStability::neutral && (orbit.is_corrected || orbit.is_of_family)) {
+      sample_.message =
+          orbit.is_of_family
+              ? "a periodic orbit of a family: those beside it are closed as well"
+              : fmt::format("a neutral periodic orbit: its largest multiplier has the modulus 1 within {:.1g}",
+                            orbit.uncertainty);
+      return AttractorKind::neutral;
+    }
+    if (orbit.stability != OrbitStability::unstable) return AttractorKind::periodic;
     sample_.message = "undecided: " + search_.doubt() + "; start beside it (--state)";
     return AttractorKind::none;
   }
@@ -281,14 +308,14 @@ class SampleRun {
     if (kept_.empty()) return;
     rotate_to_smallest();
     measure_range();
-    if (sample_.kind == AttractorKind::periodic) describe_period();
+    if (repeats(sample_.kind)) describe_period();
     describe_states();
     choose_hand_over();
   }
 
   /// The turn begins where its sequence of index vectors is least; among equal ones where the state is.
   void rotate_to_smallest() {
-    if (sample_.kind != AttractorKind::periodic) return;
+    if (!repeats(sample_.kind)) return;
     const auto m = kept_.size();
     const auto is_less = [&](std::size_t a, std::size_t b) {
       for (std::size_t s = 0; s < m; ++s) {
@@ -496,7 +523,7 @@ class SampleRun {
 
   TimeSpan time_span() const {
     TimeSpan span{kept_.front().start_time, {}};
-    if (sample_.kind == AttractorKind::periodic) span.period = sample_.period;
+    if (repeats(sample_.kind)) span.period = sample_.period;
     return span;
   }
 

@@ -327,7 +327,8 @@ std::string nothing_recorded_text(const SimulationPlan& plan) {
                      counted(long{plan.max_period}, "event"));
 }
 
-std::string no_orbit_text(const SimulationResult& result, const SimulationPlan& plan, const AttractorSearch& search) {
+std::string no_orbit_text(const HybridSystem& system, const SimulationResult& result, const SimulationPlan& plan,
+                          const AttractorSearch& search) {
   if (result.accumulation || result.dies_out) return "";
   switch (result.last.ended_by) {
     case SegmentEnd::failed:
@@ -338,6 +339,8 @@ std::string no_orbit_text(const SimulationResult& result, const SimulationPlan& 
       if (!search.doubt().empty())
         return fmt::format("Undecided after {} events: {}. A longer simulation decides (--transient-events).\n",
                            result.events, search.doubt());
+      if (const std::string why = search.unbounded(system); !why.empty())
+        return fmt::format("No attractor after {} events: {}.\n", result.events, why);
       if (const std::optional<int> period = search.repeats_after())
         return fmt::format(
             "The last events repeat, within {:g} of the orbit's range, after {}, but Newton's method finds no "

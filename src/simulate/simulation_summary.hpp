@@ -70,6 +70,7 @@ std::string not_refined_text(const FoundOrbit& orbit, long events);
 std::string nothing_recorded_text(const SimulationPlan& plan);
 
 /// Why `search` recognised no orbit and what may help.
-std::string no_orbit_text(const SimulationResult& result, const SimulationPlan& plan, const AttractorSearch& search);
+std::string no_orbit_text(const HybridSystem& system, const SimulationResult& result, const SimulationPlan& plan,
+                          const AttractorSearch& search);
 
 }  // namespace tchat

@@ -278,10 +278,10 @@ class TableWriter {
   }
 
   void add_scalars(const AttractorSample& sample, bool is_dot, Eigen::Index dot, std::string& text) const {
-    const bool repeats = sample.kind == AttractorKind::periodic;
-    add_number(text, repeats ? static_cast<double>(sample.signature.size()) : NAN);
-    add_number(text, repeats ? sample.period : NAN);
-    add_number(text, repeats ? static_cast<double>(sample.impacts) : NAN);
+    const bool is_closed = repeats(sample.kind);
+    add_number(text, is_closed ? static_cast<double>(sample.signature.size()) : NAN);
+    add_number(text, is_closed ? sample.period : NAN);
+    add_number(text, is_closed ? static_cast<double>(sample.impacts) : NAN);
     if (job_.columns.penetration)
       add_number(text, is_dot && dot < sample.section_penetrations.size() ? sample.section_penetrations(dot)
                                                                           : sample.penetration);
@@ -303,13 +303,21 @@ class TableWriter {
 void count_found(const std::vector<SampleRecord>& records, const AttractorNumbers& numbers, SweepOutcome& outcome) {
   outcome.attractors = numbers.attractors;
   outcome.found.assign(numbers.attractors.size(), 0);
+  outcome.least_events.assign(numbers.attractors.size(), 0);
   for (std::size_t r = 0; r < records.size(); ++r) {
     const int number = numbers.of_record[r];
     if (number > 0) {
-      ++outcome.found[static_cast<std::size_t>(number) - 1];
+      const std::size_t a = static_cast<std::size_t>(number) - 1;
+      const long events = records[r].sample.events;
+      outcome.least_events[a] = outcome.found[a] == 0 ? events : std::min(outcome.least_events[a], events);
+      ++outcome.found[a];
     } else if (outcome.without++ == 0) {
       outcome.first_without = records[r].index;
-      outcome.first_message = records[r].sample.message;
+      outcome.first_message =
+          numbers.left_after[r] > 0
+              ? fmt::format("chaotic for {} events, and other starts have settled after up to {}: perhaps a transient",
+                            records[r].sample.events, numbers.left_after[r])
+              : records[r].sample.message;
     }
   }
 }

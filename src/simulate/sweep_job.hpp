@@ -69,6 +69,7 @@ struct SweepOutcome {
   std::string written;                     ///< the file; the journal when interrupted
   std::vector<SweepAttractor> attractors;  ///< not of a part
   std::vector<std::size_t> found;          ///< in how many (value, start) each was
+  std::vector<long> least_events;          ///< over which each was seen; 0: not told
   std::size_t without = 0;                 ///< (value, start) without attractor
   std::size_t first_without = 0;           ///< index of the first of them
   std::string first_message;               ///< why it has none

@@ -63,6 +63,8 @@ std::string outcome_text(const SweepJob& job, const SweepOutcome& outcome) {
     const SweepAttractor& attractor = outcome.attractors[a];
     text += fmt::format("Attractor {}: {}", attractor.number, to_string(attractor.kind));
     if (!attractor.signature.empty()) text += ", " + attractor.signature;
+    if (attractor.kind == AttractorKind::chaotic && outcome.least_events[a] > 0)
+      text += fmt::format(", seen for {} events at least", outcome.least_events[a]);
     text += fmt::format(", {} times, first at {}\n", outcome.found[a], place_text(job, attractor.index));
   }
   if (outcome.attractors.size() > most_told)

@@ -87,6 +87,7 @@ ModeRule always(std::vector<IndexVector> index_vectors) {
   return ModeRule(system_of<Problem>(), std::vector<Mode>{Mode{std::move(index_vectors), {}}});
 }
 
+/// With the last turn, where the motion repeats itself.
 struct Simulated {
   SimulationResult result;
   std::vector<SimulatedSegment> segments;
@@ -96,7 +97,21 @@ inline Simulated simulate(const ModeRule& rule, const Eigen::VectorXd& x, const 
                           const SimulationPlan& plan, SimulationSettings settings = settings_for_tests()) {
   HybridSimulation simulation(rule, x, par, std::move(settings));
   Simulated all;
-  all.result = run_simulation(simulation, plan, [&](const SimulatedSegment& s) { all.segments.push_back(s); });
+  Recurrence recurrence(plan.max_period, plan.recognition);
+  std::vector<bool> ignorable;
+  const auto keep = [&](const SimulatedSegment& s) {
+    all.segments.push_back(s);
+    if (s.ended_by != SegmentEnd::event) return;
+    if (ignorable.empty()) recurrence.ignore(ignorable = ignorable_states(simulation.system(), {s.start, s.end}, par));
+    recurrence.add(s);
+  };
+  all.result =
+      run_simulation(simulation, plan, keep, [&](const SimulatedSegment&) { return recurrence.period().has_value(); });
+  for (std::size_t i = 0; i < ignorable.size(); ++i)
+    if (ignorable[i]) all.result.ignorable.push_back(static_cast<Eigen::Index>(i));
+  if (all.result.accumulation || all.result.dies_out || !recurrence.period()) return all;
+  const auto end = all.segments.end() - (all.result.last.ended_by == SegmentEnd::event ? 0 : 1);
+  all.result.turn.assign(end - *recurrence.period(), end);
   return all;
 }
 
