@@ -94,8 +94,9 @@ std::string AttractorSearch::unbounded(const HybridSystem& system) const {
   for (const Index k : ignorable_) left_out[static_cast<std::size_t>(k)] = true;
   const std::optional<Index> state = range_.growing(left_out);
   if (!state) return "";
-  return fmt::format("the range of {} still grows, {:.3g}-fold since half of the events",
-                     system.state_name(static_cast<int>(*state) + 1), range_.growth(*state));
+  const double growth = range_.growth(*state);
+  return fmt::format("the range of {} still grows{}", system.state_name(static_cast<int>(*state) + 1),
+                     std::isfinite(growth) ? fmt::format(", {:.3g}-fold since half of the events", growth) : "");
 }
 
 /// States of the last event and of those a whole number of periods before it, as long as the events repeat themselves.

@@ -56,7 +56,7 @@ enum class Neighbours {
 /// Of y, which its turn takes to itself to the noise of integration. In every direction of a multiplier +1, where Id -
 /// M is singular in units of the scale, to 1e-4 or to ten times the `uncertainty` of multipliers, and both ways, by 5 %
 /// of the scale or else by 1 %, a state is looked for whose turn moves it along the left null vectors alone
-/// (Lyapunov-Schmidt). Turns are closed where it is not moved.
+/// (Lyapunov-Schmidt). Where it is not moved (g = 0) the orbit beside is closed.
 ///
 ///     y* - R(y*) + W g = 0,  V'(y* - y) = s e_k:   n + m unknowns (y*, g), n + m equations
 ///

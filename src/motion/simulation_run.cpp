@@ -98,8 +98,8 @@ bool is_ignored(const std::vector<bool>& ignorable, Eigen::Index i) {
   return k < ignorable.size() && ignorable[k];
 }
 
-/// Does a function have the same value where state c is another one, but for that state behind a jump, which moves with
-/// it? A derivative does not tell: that of mod(x, 1) is the one of x.
+/// Is a function independent of state c, apart from passing it on in a jump? Values are compared, since derivatives do
+/// not tell: mod(x, 1) has that of x. `size`: of the state.
 bool only_moves_with(const HybridSystem& system, FunctionKind kind, int index, const VectorXd& x, int c, double size,
                      const VectorXd& par) {
   const Eigen::Index rows = kind == FunctionKind::event ? 1 : x.size();

@@ -105,7 +105,7 @@ std::string meaning(const LyapunovSpectrum& spectrum, int section, int dimension
          "motion.";
 }
 
-/// Of exponents on an orbit with known multipliers, those that rounding leaves a value.
+/// Bars reach ln |mu| / T of the orbit's multipliers, as far as those are above rounding.
 void widen_bars(LyapunovSpectrum& spectrum, const FoundOrbit& orbit) {
   std::size_t k = 0;
   for (Index j = 0; j < spectrum.exponents.size(); ++j) {

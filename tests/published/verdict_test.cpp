@@ -15,8 +15,9 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 
 /// A map u -> `jump`, once in each unit of time.
 std::string map_of(const std::string& parameters, const std::string& jump) {
-  return "par " + parameters + "\ninit tau=0, u=0.3\ntau' = 1\nu' = 0\nevent tick = 1 - tau\njump apply: tau -> 0, u -> " +
-         jump + "\nafter any: tick -> apply\n";
+  return "par " + parameters +
+         "\ninit tau=0, u=0.3\ntau' = 1\nu' = 0\nevent tick = 1 - tau\njump apply: tau -> 0, u -> " + jump +
+         "\nafter any: tick -> apply\n";
 }
 
 /// What the three commands say, each on its own.
@@ -38,8 +39,8 @@ Said said_of(const Workspace& workspace, const std::string& formulas, const std:
   said.simulated = workspace.succeed("simulate motion" + at).out;
   said.exponents = workspace.succeed("simulate motion --lyapunov" + at).out;
   said.swept = workspace
-                   .succeed("sweep motion --over " + name + "=" + value + ":" + value + ":1 --section none --fresh --state " +
-                            start)
+                   .succeed("sweep motion --over " + name + "=" + value + ":" + value +
+                            ":1 --section none --fresh --state " + start)
                    .out;
   return said;
 }
@@ -64,9 +65,9 @@ TEST_CASE("below its fold no orbit of period 3 is claimed, however slowly the mo
 TEST_CASE("closed orbits of a family are told as such, and are no attractors") {
   const Workspace workspace;
   // x'' = -x^3 from (1.2, 0): T = 4 K(1/2) / 1.2, K the complete elliptic integral with k^2 = 1/2.
-  const Said said = said_of(workspace,
-                            "par c=1\ninit x=1.2, v=0\nx' = v\nv' = -c*x^3\nevent turn = v\nafter any: turn -> identity\n",
-                            "c=1", "1.2,0");
+  const Said said =
+      said_of(workspace, "par c=1\ninit x=1.2, v=0\nx' = v\nv' = -c*x^3\nevent turn = v\nafter any: turn -> identity\n",
+              "c=1", "1.2,0");
   INFO(said.simulated << said.exponents << said.swept);
   CHECK(contains(said.simulated, "neutral, the largest modulus is 1"));
   const std::size_t at = said.simulated.find("period ");
@@ -93,10 +94,11 @@ TEST_CASE("a rotation by a jump with mod is no drift, and no attractor") {
 
 TEST_CASE("a motion that grows like a power of time is on no attractor, and no torus") {
   const Workspace workspace;
-  const Said said = said_of(workspace,
-                            "par d=0.3\ninit a=1, b=0, X=0, Y=0\ng = 1-a^2-b^2\na' = g*a - b\nb' = g*b + a\nX' = a + d\n"
-                            "Y' = X\nevent turn = b\nafter any: turn -> identity\n",
-                            "d=0.2", "1,0,0,0");
+  const Said said =
+      said_of(workspace,
+              "par d=0.3\ninit a=1, b=0, X=0, Y=0\ng = 1-a^2-b^2\na' = g*a - b\nb' = g*b + a\nX' = a + d\n"
+              "Y' = X\nevent turn = b\nafter any: turn -> identity\n",
+              "d=0.2", "1,0,0,0");
   INFO(said.simulated << said.exponents << said.swept);
   CHECK(contains(said.simulated, "the range of X still grows"));
   CHECK(contains(said.exponents, "undecided: the range of X still grows"));
@@ -116,8 +118,8 @@ TEST_CASE("exponents of an unstable orbit that the motion keeps to are no chaos"
 }
 
 TEST_CASE("chaos that other starts leave is perhaps a transient") {
-  // (4 + e) u (1 - u) leaves [0, 1] near u = 1/2, with a mean life of about pi / sqrt(e) = 2,000 events, and then goes to
-  // -0.6.
+  // (4 + e) u (1 - u) leaves [0, 1] near u = 1/2, with a mean life of about pi / sqrt(e) = 2,000 events, and then goes
+  // to -0.6.
   const Workspace workspace;
   workspace.write("leak.tch", map_of("e=2.5e-6", "heav(u)*(4 + e)*u*(1-u) + (1 - heav(u))*(u/2 - 0.3)"));
   const std::string leaking =
