@@ -372,7 +372,7 @@ int make_picture(const PlotCommand& command) {
     page.files.push_back(std::move(picture.files));
     if (name.empty()) name = picture.name;
   }
-  page.name = name;
+  page.name = command.output.empty() ? name : std::filesystem::path(command.output).stem().string();
   const std::string made =
       output_picture(sheet_of(std::move(figures), command), {command.output, command.script, name, std::move(page)});
   if (!made.empty()) fmt::print("{}\n", made);

@@ -55,10 +55,11 @@ namespace {
 
 constexpr int computation_failed = 1;
 constexpr int bad_input = 2;
+constexpr int nothing_begins = 4;
 
 int report(const std::string& message, int status) {
   std::cout << std::flush;
-  std::cerr << "tchat: " << printable(message) << '\n';
+  print_failure(std::cerr, message);
   return status;
 }
 
@@ -67,6 +68,8 @@ int run_command(const std::function<int()>& command) {
     return command();
   } catch (const UserError& error) {
     return report(error.what(), bad_input);
+  } catch (const NothingBegins& error) {
+    return report(error.what(), nothing_begins);
   } catch (const ComputationError& error) {
     return report(error.what(), computation_failed);
   } catch (const std::bad_alloc&) {
@@ -82,34 +85,34 @@ int run_command(const std::function<int()>& command) {
 
 using AddCommand = void (*)(CLI::App&, std::function<int()>&);
 
-struct Command {
+struct Subcommand {
   std::string_view name;
   AddCommand add;
 };
 
 /// In the order of the help.
-constexpr std::array<Command, 15> commands = {{{"run", add_run_command},
-                                               {"resegment", add_resegment_command},
-                                               {"simulate", add_simulate_command},
-                                               {"sweep", add_sweep_command},
-                                               {"explore", add_explore_command},
-                                               {"labels", add_labels_command},
-                                               {"orbit", add_orbit_command},
-                                               {"table", add_table_command},
-                                               {"verify", add_verify_command},
-                                               {"grazing", add_grazing_command},
-                                               {"plot", add_plot_command},
-                                               {"check", add_check_command},
-                                               {"dat", add_dat_command},
-                                               {"constants", add_constants_command},
-                                               {"new", add_new_command}}};
+constexpr std::array<Subcommand, 15> commands = {{{"run", add_run_command},
+                                                  {"resegment", add_resegment_command},
+                                                  {"simulate", add_simulate_command},
+                                                  {"sweep", add_sweep_command},
+                                                  {"explore", add_explore_command},
+                                                  {"labels", add_labels_command},
+                                                  {"orbit", add_orbit_command},
+                                                  {"table", add_table_command},
+                                                  {"verify", add_verify_command},
+                                                  {"grazing", add_grazing_command},
+                                                  {"plot", add_plot_command},
+                                                  {"check", add_check_command},
+                                                  {"dat", add_dat_command},
+                                                  {"constants", add_constants_command},
+                                                  {"new", add_new_command}}};
 
 /// Adds the command that was asked for alone, as setting up the options of all takes longer than many commands run.
 /// When none was, adds all of them and the manual page.
 void add_commands(CLI::App& app, std::function<int()>& chosen, std::string_view asked) {
-  for (const Command& command : commands)
+  for (const Subcommand& command : commands)
     if (command.name == asked) return command.add(app, chosen);
-  for (const Command& command : commands) command.add(app, chosen);
+  for (const Subcommand& command : commands) command.add(app, chosen);
   add_manual_command(app, chosen);
 }
 

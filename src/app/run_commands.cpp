@@ -66,7 +66,8 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
       "The table shows the first point, special points, and where orbits become inadmissible; p.O has all.\n"
       "Example: tchat run linosc -c impacting -d impacting -o up NMX=50\n"
       "Exit status: 0 a branch was computed, even if it ended by MX; 1 no convergence at the first point\n"
-      "or step; 2 bad usage or input; 3 ended by MX with --strict; 130 or 143 interrupted (complete files).");
+      "or step; 2 bad usage or input; 3 ended by MX with --strict; 4 nothing begins at the label; 130 or 143\n"
+      "interrupted (complete files).");
   command->callback([&chosen, request] {
     chosen = [request] {
       take_source_as_problem(request->name, request->problem);

@@ -1,6 +1,8 @@
 #include "base/messages.hpp"
 
 #include <algorithm>
+#include <cstdlib>
+#include <fstream>
 
 namespace tchat {
 
@@ -12,6 +14,11 @@ std::string printable(std::string_view text) {
   std::string result(text);
   std::replace_if(result.begin(), result.end(), is_control, '?');
   return result;
+}
+
+void print_failure(std::ostream& stream, const std::string& text) {
+  stream << "tchat: " << printable(text) << '\n';
+  if (const char* const path = std::getenv("TCHAT_FAILURE"); path != nullptr) std::ofstream(path) << printable(text);
 }
 
 void print_warnings(std::ostream& stream, const std::vector<std::string>& texts) {

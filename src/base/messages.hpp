@@ -29,7 +29,17 @@ class ComputationError : public std::runtime_error {
   explicit ComputationError(const std::string& message) : std::runtime_error(printable(message)) {}
 };
 
-// Warnings on the screen, the one way they look.
+/// What was to be followed does not exist there, as a curve that does not begin at a label; exit status 4.
+class NothingBegins : public ComputationError {
+ public:
+  using ComputationError::ComputationError;
+};
+
+// Warnings and failures, the one way they look.
+
+/// "tchat: TEXT", printable. The file that the environment variable TCHAT_FAILURE names, if any, gets the text as well,
+/// so that a program which has started this one need not look for it among other output.
+void print_failure(std::ostream& stream, const std::string& text);
 
 /// "tchat: warning: TEXT" for each, printable.
 void print_warnings(std::ostream& stream, const std::vector<std::string>& texts);

@@ -33,8 +33,12 @@ std::vector<double> numbers_of_start(const std::string& text) {
 }
 
 /// What is watched on the first segment.
-std::string mode_words(const SweepAttractor& attractor) {
-  return attractor.mode.empty() ? "" : " --mode " + quoted_for_shell(attractor.mode);
+Command mode_words(const SweepAttractor& attractor) {
+  return attractor.mode.empty() ? Command{} : Command{"--mode", attractor.mode};
+}
+
+Command state_words(const Eigen::VectorXd& state) {
+  return {"--state", fmt::format("{}", fmt::join(state.begin(), state.end(), ","))};
 }
 
 /// The least box around numbers of each state.
@@ -97,12 +101,12 @@ std::optional<Eigen::VectorXd> AttractorSamples::numbers_of(const SweptAttractor
   return state;
 }
 
-std::string AttractorSamples::words_of(const SweptAttractor& sample) const {
+Command AttractorSamples::words_of(const SweptAttractor& sample) const {
   const std::optional<Eigen::VectorXd> state = numbers_of(sample);
-  if (!state) return "";
-  std::string words = fmt::format("--state {}", fmt::join(state->begin(), state->end(), ","));
+  if (!state) return {};
+  const Command words = state_words(*state);
   if (sample.attractor->kind != AttractorKind::periodic) return words;
-  return words + mode_words(*sample.attractor) + " --before-event";
+  return tchat::words_of({words, mode_words(*sample.attractor), {"--before-event"}});
 }
 
 std::vector<std::string> AttractorSamples::further_starts(int count) const {
@@ -129,11 +133,8 @@ std::vector<std::string> AttractorSamples::further_starts(int count) const {
   return states;
 }
 
-std::string AttractorSamples::words_of(const SweepAttractor& attractor) {
-  std::string words = "--state ";
-  for (Eigen::Index k = 0; k < attractor.state.size(); ++k)
-    words += fmt::format("{}{}", k > 0 ? "," : "", attractor.state(k));
-  return words + mode_words(attractor);
+Command AttractorSamples::words_of(const SweepAttractor& attractor) {
+  return tchat::words_of({state_words(attractor.state), mode_words(attractor)});
 }
 
 double AttractorSamples::value_of(const SweepAttractor& attractor) const {
@@ -305,7 +306,7 @@ BranchRecognition::Verdict BranchRecognition::compare_with_run(const OwnOrbit& o
                                                start.label, own.parameter(), 2 * static_cast<int>(start.points) + 40});
   const JobResult result = runner_.run({job}).front();
   if (!result.was_run) return Verdict::interrupted;
-  if (!result.succeeded) return Verdict::unknown;
+  if (!result.succeeded()) return Verdict::unknown;
   Verdict verdict = Verdict::unknown;
   for (const LabelledSolution& other : read_solution_file(commands_.file('q', job.name)).solutions) {
     const double parameter = stored_parameter(other, own.solution.free_parameters.front());
@@ -359,11 +360,11 @@ void measure_coverage(const Sweep& sweep, const OrbitCatalogue& catalogue, const
     }
     UnexplainedAttractor& one = missing[known.number];
     if (one.count++ == 0) {
-      const std::string words = sweep.samples.words_of(sample);
+      const Command words = sweep.samples.words_of(sample);
       one.attractor = fmt::format("{}{}", sweep.letter, known.number);
       one.kind = to_string(known.kind);
       one.first = sample.value;
-      one.command = words.empty() ? "" : commands.show(sample.value, words);
+      one.command = words.empty() ? Command{} : commands.show(sample.value, words);
     }
     one.segments = known.kind == AttractorKind::periodic ? static_cast<int>(signature_word(known).size()) : 0;
     one.last = sample.value;

@@ -42,10 +42,10 @@ class AttractorSamples {
   std::vector<double> values_of(const SweptAttractor& sample, const std::vector<std::string>& names) const;
   /// The first recorded state, of a period that in which its first segment ends; nothing where none is recorded.
   std::optional<Eigen::VectorXd> numbers_of(const SweptAttractor& sample) const;
-  /// The words of `tchat simulate` that begin there; "" where none is recorded.
-  std::string words_of(const SweptAttractor& sample) const;
+  /// The words of `tchat simulate` that begin there; none where no state is recorded.
+  Command words_of(const SweptAttractor& sample) const;
   /// The words of `tchat simulate` that begin on an attractor, where it has been found first.
-  static std::string words_of(const SweepAttractor& attractor);
+  static Command words_of(const SweepAttractor& attractor);
   double value_of(const SweepAttractor& attractor) const;
   /// `count` states of low discrepancy in the least box around the starts and the recorded states, as --state takes
   /// them.

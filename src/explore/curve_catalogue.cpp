@@ -212,44 +212,39 @@ int CurveCommands::most_points() const {
   return static_cast<int>(std::clamp(60.0 * std::sqrt(std::max(ratio, 1.0 / ratio)), 400.0, 20000.0));
 }
 
-CommandJob CurveCommands::curve(const std::string& name, const std::string& command, const std::string& source,
+CommandJob CurveCommands::curve(const std::string& name, const Commands& commands, const std::string& source,
                                 bool rests) const {
-  CommandJob job{name, {}, {commands_.file('q', source), commands_.file('r', source)}, commands_.files_of(name)};
-  const std::size_t both = command.find(" && ");
-  const bool has_start = both != std::string::npos;
+  CommandJob job = commands_.job_from(source, name, commands);
   const SweptRange& first = commands_.range();
-  if (has_start)
-    job.lines.push_back(command.substr(0, both) + " -q" +
-                        shell_words({fmt::format("ICP=[{},{}]", first.parameter, second_.parameter)}));
-  std::vector<std::string> words{free_parameters(rests),
-                                 fmt::format("RL0={}", first.from),
-                                 fmt::format("RL1={}", first.to),
-                                 fmt::format("BOUNDS={{{}: [{}, {}]}}", second_.parameter, second_.from, second_.to),
-                                 fmt::format("DS={:g}", largest_step() / 10.0),
-                                 fmt::format("DSMAX={:g}", largest_step()),
-                                 fmt::format("NMX={}", most_points())};
+  if (commands.size() > 1)
+    job.commands.front() =
+        words_of({commands.front(), {"-q", fmt::format("ICP=[{},{}]", first.parameter, second_.parameter)}});
+  Command words{free_parameters(rests),
+                fmt::format("RL0={}", first.from),
+                fmt::format("RL1={}", first.to),
+                fmt::format("BOUNDS={{{}: [{}, {}]}}", second_.parameter, second_.from, second_.to),
+                fmt::format("DS={:g}", largest_step() / 10.0),
+                fmt::format("DSMAX={:g}", largest_step()),
+                fmt::format("NMX={}", most_points())};
   std::vector<int> returns(static_cast<std::size_t>(returns_));
   std::iota(returns.begin(), returns.end(), 1);
-  if (command.starts_with("tchat resegment")) words.push_back(fmt::format("GCIPSI=[{}]", fmt::join(returns, ",")));
-  words.insert(words.end(), commands_.constants().begin(), commands_.constants().end());
-  job.lines.push_back((has_start ? command.substr(both + 4) : command) + " --both --clip" + shell_words(words));
+  if (commands.front().front() == "resegment") words.push_back(fmt::format("GCIPSI=[{}]", fmt::join(returns, ",")));
+  job.commands.back() = words_of({commands.back(), {"--both", "--clip"}, words, commands_.constants()});
   return job;
 }
 
-CommandJob CurveCommands::slice(const ResonantPoint& at, int sign) const {
-  const std::string name =
-      fmt::format("{}_XI{}_in{}{}", at.curve, at.label, at.returns, sign > 0 ? "_forward" : "_backward");
+CommandJob CurveCommands::slice(const std::string& name, const ResonantPoint& at, int sign) const {
   const std::string beside = name + "_beside";
   const double step = largest_step() / 5.0;
-  const std::string curve = quoted_for_shell(commands_.path(at.curve));
-  CommandJob job{name, {}, {commands_.file('q', at.curve), commands_.file('r', at.curve)}, commands_.files_of(name)};
-  job.lines = {
-      fmt::format("tchat run {} -c {} -s {} IRS={} NMX=2 DS={:g} DSMAX={:g} ILP=0 ISP=0 GCIPSI=[] -o {} --clip "
-                  "-q",
-                  problem_arguments(commands_.problem()), quoted_for_shell(commands_.file('r', at.curve)), curve,
-                  at.label, sign * step, step, quoted_for_shell(commands_.path(beside)))};
-  for (const std::string& line : commands_.born_lines(beside, "EP1", at.returns, name)) job.lines.push_back(line);
-  return job;
+  Commands commands{
+      words_of({{"run"},
+                problem_words(commands_.problem()),
+                {"-c", commands_.file('r', at.curve), "-s", commands_.path(at.curve), fmt::format("IRS={}", at.label),
+                 "NMX=2", fmt::format("DS={:g}", sign * step), fmt::format("DSMAX={:g}", step), "ILP=0", "ISP=0",
+                 "GCIPSI=[]", "-o", commands_.path(beside), "--clip", "-q"}})};
+  for (Command& command : commands_.born_commands(beside, "EP1", at.returns, name))
+    commands.push_back(std::move(command));
+  return commands_.job_from(at.curve, name, std::move(commands));
 }
 
 }  // namespace tchat

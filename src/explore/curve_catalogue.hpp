@@ -83,12 +83,12 @@ class CurveCommands {
   int second_index() const { return index_; }
   /// The largest n of the points with xi_n = 0 that are used.
   int returns() const { return returns_; }
-  /// By the line of a CurveCommand (run/run_remarks.hpp), from a label of the files `source`, in both directions.
+  /// By the commands of a CurveCommand (run/run_remarks.hpp), from a label of the files `source`, in both directions.
   /// `rests`: of equilibria, which have no monitors.
-  CommandJob curve(const std::string& name, const std::string& command, const std::string& source, bool rests) const;
+  CommandJob curve(const std::string& name, const Commands& commands, const std::string& source, bool rests) const;
   /// Beside a point of a grazing curve, in the direction of `sign` along it: orbits with one impact in n returns over
   /// P.
-  CommandJob slice(const ResonantPoint& at, int sign) const;
+  CommandJob slice(const std::string& name, const ResonantPoint& at, int sign) const;
 
  private:
   std::string free_parameters(bool rests) const;

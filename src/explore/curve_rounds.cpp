@@ -9,15 +9,13 @@
 #include <limits>
 
 #include "base/levels.hpp"
-#include "base/words.hpp"
-#include "explore/branch_ends.hpp"
+#include "explore/run_record.hpp"
 #include "files/solution_file_reader.hpp"
 #include "plugin/problem_setup.hpp"
-#include "run/hopf_switch.hpp"
 #include "run/run_remarks.hpp"
 #include "settings/constants_file.hpp"
 #include "settings/point_type.hpp"
-#include "settings/problem_type.hpp"
+#include "settings/settings_type.hpp"
 
 namespace tchat {
 
@@ -27,7 +25,7 @@ struct CurveRounds::RunFiles {
   RunSettings settings;
   SolutionFile solutions;
   std::vector<CurveSection> sections;
-  AdmissiblePoints admissible;
+  RunRecord record;
 };
 
 namespace {
@@ -116,7 +114,7 @@ CurveRounds::RunFiles CurveRounds::files_of(const std::string& name) const {
   const ExplorationCommands& commands = context_.commands;
   RunFiles files{name, read_constants_file(commands.file('r', name)), read_solution_file(commands.file('q', name)),
                  curve_sections(name, "", read_point_file(commands.file('p', name)), columns()),
-                 admissible_points(commands.file('d', name))};
+                 run_record(commands.file('d', name))};
   resolve_names(files.settings, context_.system);
   return files;
 }
@@ -138,8 +136,8 @@ std::vector<CurveRounds::Labelled> CurveRounds::labels_of(const RunFiles& files)
       for (std::size_t k = 0; k < section.points.size(); ++k)
         if (section.labels[k] == solution.label) one.point = section.points[k];
     one.point.place(1) = one.second / columns().widths(1);
-    const auto known = files.admissible.labels.find(solution.label);
-    one.is_admissible = known == files.admissible.labels.end() || known->second;
+    const auto known = files.record.admissible.find(solution.label);
+    one.is_admissible = known == files.record.admissible.end() || known->second;
     one.is_section_tangent = tangent_section(solution.kind, files.settings, context_.system);
     result.push_back(std::move(one));
   }
@@ -152,13 +150,10 @@ void CurveRounds::add_curves(const ExploredBranch& branch, Candidates& next) {
     if (may_have_curve(label.type)) add_curve(files, label, branch.has_returns, next);
 }
 
-/// `rests`: the curve is one of equilibria.
 CurveRounds::Candidate CurveRounds::candidate_at(const RunFiles& files, const Labelled& label, bool has_returns,
-                                                 const std::string& name, const CurveCommand& command,
-                                                 bool rests) const {
+                                                 const CurveCommand& command) const {
   Candidate candidate;
   ExploredCurve& curve = candidate.curve;
-  curve.name = name;
   curve.kind = command.kind;
   curve.has_returns = has_returns;
   curve.parent = candidate.owner = files.name;
@@ -166,29 +161,40 @@ CurveRounds::Candidate CurveRounds::candidate_at(const RunFiles& files, const La
   candidate.label = label.label;
   candidate.start = label.point;
   candidate.why_none = label.is_admissible ? command.why_none : "the orbit there is inadmissible";
-  if (candidate.why_none.empty()) curve.job = commands_.curve(name, command.line, files.name, rests);
   return candidate;
 }
 
 void CurveRounds::add_curve(const RunFiles& files, const Labelled& label, bool has_returns, Candidates& next) {
-  const ExplorationCommands& commands = context_.commands;
-  const std::string name = fmt::format("{}_{}{}_curve", files.name, label.type, label.label);
-  const CurveCommand command = curve_command(label.start, files.settings, context_.system, commands.problem(),
-                                             commands.path(files.name), commands.path(name));
   const bool rests = !family_of(files.settings).facts().headings.has_period;
-  const Candidate candidate = candidate_at(files, label, has_returns, name, command, rests);
-  (candidate.why_none.empty() ? next : unfollowed_).push_back(candidate);
+  const auto command = [this, start = label.start, settings = files.settings,
+                        source = files.name](const std::string& name) {
+    return curve_command(start, settings, context_.system, context_.commands.problem(), context_.commands.path(source),
+                         context_.commands.path(name));
+  };
+  Candidate candidate = candidate_at(files, label, has_returns, command(""));
+  candidate.make = [this, command, source = files.name, rests](const std::string& name) {
+    return commands_.curve(name, command(name).commands, source, rests);
+  };
+  (candidate.why_none.empty() ? next : unfollowed_).push_back(std::move(candidate));
 }
 
 void CurveRounds::add_born_curves(const RunFiles& files, const Labelled& label, bool has_returns,
                                   Candidates& next) const {
-  const ExplorationCommands& commands = context_.commands;
-  const std::string name = fmt::format("{}_{}{}_born", files.name, label.type, label.label);
-  for (const CurveCommand& command : born_curve_commands(label.start, files.settings, commands.problem(),
-                                                         commands.path(files.name), commands.path(name))) {
-    next.push_back(candidate_at(files, label, has_returns, name + command.suffix, command, command.rests));
-    next.back().is_born = true;
-    next.back().is_alone = command.is_alone;
+  const auto commands = [this, start = label.start, settings = files.settings,
+                         source = files.name](const std::string& name) {
+    return born_curve_commands(start, settings, context_.commands.problem(), context_.commands.path(source),
+                               context_.commands.path(name));
+  };
+  std::size_t number = 0;
+  for (const CurveCommand& command : commands("")) {
+    Candidate candidate = candidate_at(files, label, has_returns, command);
+    candidate.curve.is_born = true;
+    candidate.is_alone = command.is_alone;
+    candidate.make = [this, commands, number, source = files.name, rests = command.rests](const std::string& name) {
+      return commands_.curve(name, commands(name)[number].commands, source, rests);
+    };
+    next.push_back(std::move(candidate));
+    ++number;
   }
 }
 
@@ -200,9 +206,11 @@ void CurveRounds::add_slices(const ExploredCurve& curve, const Labelled& label, 
       candidate.is_slice = true;
       candidate.slice.has_returns = true;
       candidate.slice.parent = candidate.owner = curve.name;
-      candidate.slice.job = commands_.slice({curve.name, label.label, returns}, sign);
-      candidate.slice.name = candidate.slice.job.name;
       candidate.label = label.label;
+      candidate.returns = returns;
+      candidate.make = [this, at = ResonantPoint{curve.name, label.label, returns}, sign](const std::string& name) {
+        return commands_.slice(name, at, sign);
+      };
       next.push_back(std::move(candidate));
     }
 }
@@ -223,7 +231,7 @@ std::string CurveRounds::curve_that_ends(const Candidate& candidate) const {
 /// Of a grazing curve the orbit at the label may be one that repeats.
 std::string CurveRounds::known_curve(const Candidate& candidate) const {
   if (candidate.is_slice) return "";
-  if (candidate.is_born) return candidate.is_alone ? curve_that_ends(candidate) : "";
+  if (candidate.curve.is_born) return candidate.is_alone ? curve_that_ends(candidate) : "";
   if (candidate.curve.kind != "GR") return catalogue_.curve_at(candidate.curve.kind, candidate.start);
   for (const std::string& name : catalogue_.curves_through(candidate.start))
     if (const ExploredCurve* const curve = find_named(curves_.curves, name); curve != nullptr && curve->kind == "GR")
@@ -255,6 +263,12 @@ bool CurveRounds::is_left() {
   return true;
 }
 
+void CurveRounds::name(Candidate& candidate) {
+  const std::string name = candidate.is_slice ? context_.next_name() : fmt::format("c{}", ++named_);
+  (candidate.is_slice ? candidate.slice.name : candidate.curve.name) = name;
+  (candidate.is_slice ? candidate.slice.job : candidate.curve.job) = candidate.make(name);
+}
+
 /// What it finds starts the next round.
 CurveRounds::Candidates CurveRounds::run(const Candidates& round) {
   Candidates tried, next;
@@ -266,21 +280,24 @@ CurveRounds::Candidates CurveRounds::run(const Candidates& round) {
       tried.push_back(candidate);
   }
   std::vector<CommandJob> jobs;
-  for (const Candidate& candidate : tried) jobs.push_back(candidate.job());
+  for (Candidate& candidate : tried) {
+    name(candidate);
+    jobs.push_back(candidate.job());
+  }
   const std::vector<JobResult> results = context_.runner.run(jobs);
   for (std::size_t i = 0; i < tried.size(); ++i) {
     if (!results[i].was_run) {
       context_.diagram.complete = false;
       continue;
     }
-    if (!results[i].succeeded && tried[i].is_born && results[i].log.find(no_curve_begins) != std::string::npos)
-      curves_.without[failure_text(results[i].log)].push_back(tried[i].curve.origin);
-    else if (!results[i].succeeded)
-      curves_.failures.push_back(fmt::format("{} failed: {}", tried[i].name(), failure_text(results[i].log)));
+    if (results[i].status == nothing_begins_status)
+      curves_.without[results[i].failure].push_back(tried[i].curve.origin);
+    else if (!results[i].succeeded())
+      curves_.failures.push_back(fmt::format("{} failed: {}", tried[i].name(), results[i].failure));
     else if (tried[i].is_slice)
       take_slice(tried[i], next);
     else
-      take_curve(tried[i], results[i].log, next);
+      take_curve(tried[i], next);
   }
   return next;
 }
@@ -294,7 +311,7 @@ std::string CurveRounds::curve_again(const Candidate& candidate, const std::vect
   return known;
 }
 
-void CurveRounds::take_curve(const Candidate& candidate, const std::string& log, Candidates& next) {
+void CurveRounds::take_curve(const Candidate& candidate, Candidates& next) {
   ExploredCurve curve = candidate.curve;
   const PointFile points = read_point_file(context_.commands.file('p', curve.name));
   std::vector<CurveSection> sections = curve_sections(curve.name, curve.kind, points, columns());
@@ -306,11 +323,10 @@ void CurveRounds::take_curve(const Candidate& candidate, const std::string& log,
   }
   if (is_left()) return;
   for (CurveSection& section : sections) catalogue_.add(std::move(section));
-  describe(curve, log);
+  describe(curve);
   set_curve(candidate, curve.name);
   curves_.curves.push_back(curve);
-  context_.show(
-      fmt::format("{}: {} curve from {}, {}\n", curve.name, curve.kind, curve.origin, range_text(curves_, curve)));
+  context_.show(fmt::format("{}: {}, {}\n", curve.name, origin_text(curve), range_text(curves_, curve)));
   const RunFiles files = files_of(curve.name);
   for (const Labelled& label : labels_of(files)) {
     if (label.type == "XI" && !curve.has_returns) add_slices(curve, label, next);
@@ -320,7 +336,7 @@ void CurveRounds::take_curve(const Candidate& candidate, const std::string& log,
   }
 }
 
-void CurveRounds::describe(ExploredCurve& curve, const std::string& log) const {
+void CurveRounds::describe(ExploredCurve& curve) const {
   const RunFiles files = files_of(curve.name);
   const PointFile points = read_point_file(context_.commands.file('p', curve.name));
   const Eigen::Vector2d widths = columns().widths;
@@ -331,8 +347,8 @@ void CurveRounds::describe(ExploredCurve& curve, const std::string& log) const {
       most = most.max(point.place.array() * widths.array());
     }
   curve.first_from = least(0), curve.second_from = least(1), curve.first_to = most(0), curve.second_to = most(1);
-  curve.points = files.admissible.points;
-  curve.inadmissible = files.admissible.inadmissible;
+  curve.points = files.record.points;
+  curve.inadmissible = files.record.inadmissible;
   for (const Labelled& label : labels_of(files))
     curve.labels.push_back({label.label,
                             label.type,
@@ -341,10 +357,11 @@ void CurveRounds::describe(ExploredCurve& curve, const std::string& log) const {
                             label.is_section_tangent ? "tangent section, no grazing" : zeros_text(label.xi_zeros),
                             {}});
   curve.signatures = signatures_of(points);
-  const std::vector<std::string> reasons = branch_ends(log);
+  const std::vector<RecordedEnd>& reasons = files.record.ends;
   for (std::size_t k = 0; k < points.sections.size(); ++k) {
     if (points.sections[k].rows.empty()) continue;
-    curve.ends.push_back(end_of(curve, points.sections[k], reasons.size() == points.sections.size() ? reasons[k] : ""));
+    curve.ends.push_back(
+        end_of(curve, points.sections[k], reasons.size() == points.sections.size() ? reasons[k].text : ""));
   }
 }
 
@@ -371,12 +388,13 @@ CurveEnd CurveRounds::end_of(const ExploredCurve& curve, const PointSection& sec
 void CurveRounds::take_slice(const Candidate& candidate, Candidates& next) {
   ExploredBranch slice = candidate.slice;
   const RunFiles files = files_of(slice.name);
-  if (files.admissible.only_at_start || files.solutions.solutions.empty()) return;
+  if (files.record.only_at_start || files.solutions.solutions.empty()) return;
   if (is_left()) return;
   describe_points(read_point_file(context_.commands.file('p', slice.name)), context_.commands.range(), slice);
   const double second = stored_parameter(files.solutions.solutions.front(), commands_.second_index());
   slice.origin =
-      fmt::format("at {} = {:.6g} beside XI {} of {}", curves_.second, second, candidate.label, candidate.owner);
+      fmt::format("one impact in {} return{}, at {} = {:.6g} beside XI {} of {}", candidate.returns,
+                  candidate.returns > 1 ? "s" : "", curves_.second, second, candidate.label, candidate.owner);
   for (const Labelled& label : labels_of(files))
     slice.labels.push_back({label.label, label.type, label.first, "", label.is_admissible ? "" : "inadmissible", ""});
   curves_.slices.push_back(slice);

@@ -29,6 +29,7 @@ class CurveRounds {
     ExploredDiagram& diagram;  ///< the curves found are entered at its labels
     std::function<bool()> goes_on;
     std::function<void(const std::string&)> show;
+    std::function<std::string()> next_name;  ///< of a branch
   };
   /// `par`: those of the diagram over one. Throws UserError as CurveCommands does.
   CurveRounds(const Context& context, const ParameterVector& par);
@@ -51,12 +52,13 @@ class CurveRounds {
   /// A job with what it is to find: a curve, or a slice.
   struct Candidate {
     bool is_slice = false;
+    std::function<CommandJob(const std::string&)> make;  ///< its job, for files of this name
     ExploredCurve curve;
     ExploredBranch slice;
     CurvePoint start;       ///< of a curve
     std::string owner;      ///< the branch, slice or curve that it is from
     int label = 0;          ///< of the owner
-    bool is_born = false;   ///< a curve that begins there, if one does
+    int returns = 1;        ///< of a slice: one impact in so many
     bool is_alone = false;  ///< then the only one of its kind that may end there
     std::string why_none;   ///< no command follows it
     const CommandJob& job() const { return is_slice ? slice.job : curve.job; }
@@ -75,18 +77,20 @@ class CurveRounds {
   void set_curve(const Candidate& candidate, const std::string& curve);
 
   void add_curves(const ExploredBranch& branch, Candidates& next);
-  Candidate candidate_at(const RunFiles& files, const Labelled& label, bool has_returns, const std::string& name,
-                         const CurveCommand& command, bool rests) const;
+  /// Without its job.
+  Candidate candidate_at(const RunFiles& files, const Labelled& label, bool has_returns,
+                         const CurveCommand& command) const;
   /// The curve through a label, to `next`, or to those without a command.
   void add_curve(const RunFiles& files, const Labelled& label, bool has_returns, Candidates& next);
   /// Those that begin at a label.
   void add_born_curves(const RunFiles& files, const Labelled& label, bool has_returns, Candidates& next) const;
   void add_slices(const ExploredCurve& curve, const Labelled& label, Candidates& next) const;
+  void name(Candidate& candidate);
   Candidates run(const Candidates& round);
   bool is_left();
-  void take_curve(const Candidate& candidate, const std::string& log, Candidates& next);
+  void take_curve(const Candidate& candidate, Candidates& next);
   void take_slice(const Candidate& candidate, Candidates& next);
-  void describe(ExploredCurve& curve, const std::string& log) const;
+  void describe(ExploredCurve& curve) const;
   CurveEnd end_of(const ExploredCurve& curve, const PointSection& section, const std::string& stopped) const;
   /// Labels that no command follows may be on a curve nevertheless.
   void settle_unfollowed();
@@ -100,6 +104,7 @@ class CurveRounds {
   CurveCatalogue catalogue_;
   ExploredCurves curves_;
   Candidates unfollowed_;
+  int named_ = 0;  // curves that have a name
 };
 
 }  // namespace tchat

@@ -10,7 +10,6 @@
 
 #include "base/levels.hpp"
 #include "base/words.hpp"
-#include "explore/branch_ends.hpp"
 #include "files/point_file_reader.hpp"
 
 namespace tchat {
@@ -102,17 +101,16 @@ std::string chosen_quantity(const ExploredDiagram& diagram, const DiagramFiles& 
 void add_pictures(const DiagramFiles& files, const SweepTable& sweep, ExploredDiagram& diagram) {
   if (diagram.branches.empty()) return;
   diagram.quantity = files.quantity.empty() ? chosen_quantity(diagram, files, sweep) : files.quantity;
-  std::string words = "tchat plot";
   std::vector<std::string> inputs;
   for (const ExploredBranch& branch : diagram.branches) inputs.push_back(branch.job.outputs.front());
   inputs.push_back(files.sweep);
-  for (const std::string& file : inputs) words += " " + quoted_for_shell(file);
-  if (!diagram.quantity.empty()) words += " -y " + quoted_for_shell(diagram.quantity);
-  words += " --grey --labels " + drawn_types(diagram, sweep.over.front());
-  if (diagram.branches.size() > most_colours) words += " --black";
+  Command words = words_of({{"plot"}, inputs});
+  if (!diagram.quantity.empty()) words.insert(words.end(), {"-y", diagram.quantity});
+  words.insert(words.end(), {"--grey", "--labels", drawn_types(diagram, sweep.over.front())});
+  if (diagram.branches.size() > most_colours) words.emplace_back("--black");
   const auto add = [&](const char* name, const std::vector<std::string>& outputs) {
     CommandJob job{name, {}, inputs, outputs};
-    for (const std::string& file : outputs) job.lines.push_back(words + " -o " + quoted_for_shell(file));
+    for (const std::string& file : outputs) job.commands.push_back(words_of({words, {"-o", file}}));
     diagram.last_jobs.push_back(std::move(job));
   };
   add("picture", {files.folder + ".png", files.folder + ".svg"});
@@ -123,23 +121,34 @@ void add_curve_picture(const std::string& folder, const std::vector<std::string>
                        ExploredDiagram& diagram) {
   if (files.empty()) return;
   const std::string picture = folder + "_curves.png";
-  std::string words = "tchat plot";
-  for (const std::string& file : files) words += " " + quoted_for_shell(file);
-  diagram.last_jobs.push_back({"curves",
-                               {words + " -y " + quoted_for_shell(second) + " --black -o " + quoted_for_shell(picture)},
-                               files,
-                               {picture}});
+  diagram.last_jobs.push_back(
+      {"curves", {words_of({{"plot"}, files, {"-y", second, "--black", "-o", picture}})}, files, {picture}});
 }
+
+namespace {
+
+/// Removes pictures of an earlier call; a file that is not one of these is the user's, and kept as FILE~.
+void clear_outputs(const CommandJob& job, bool are_own) {
+  std::error_code failed;  // then it is written over, or the command says why not
+  for (const std::string& file : job.outputs)
+    if (are_own)
+      std::filesystem::remove(file, failed);
+    else
+      std::filesystem::rename(file, file + "~", failed);
+}
+
+}  // namespace
 
 std::vector<std::string> draw_pictures(const std::vector<CommandJob>& jobs, const std::string& folder,
                                        const std::function<bool()>& interrupted) {
+  JobRunner runner(folder, 1, interrupted);
   for (const CommandJob& job : jobs)
-    for (const std::string& file : job.outputs) std::filesystem::remove(file);
+    if (!runner.is_done(job)) clear_outputs(job, runner.has_made(job));
   std::vector<std::string> warnings;
-  const std::vector<JobResult> results = JobRunner(folder, 1, interrupted).run(jobs);
+  const std::vector<JobResult> results = runner.run(jobs);
   for (std::size_t i = 0; i < jobs.size(); ++i)
-    if (results[i].was_run && !results[i].succeeded)
-      warnings.push_back(fmt::format("the {} is not drawn: {}", jobs[i].name, failure_text(results[i].log)));
+    if (results[i].was_run && !results[i].succeeded())
+      warnings.push_back(fmt::format("the {} is not drawn: {}", jobs[i].name, results[i].failure));
   return warnings;
 }
 

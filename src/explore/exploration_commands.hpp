@@ -1,12 +1,13 @@
-/// An exploration as jobs: its request, its commands, their execution on several processors, and its Makefile.
+/// An exploration as jobs: its request and its commands.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "explore/command_jobs.hpp"
 #include "model/hybrid_system.hpp"
+#include "run/run_remarks.hpp"
 
 namespace tchat {
 
@@ -51,43 +52,6 @@ SweptRange read_swept_range(const std::string& option, const std::string& text, 
 /// then has the name, where it is one. Throws UserError where there is none.
 int find_parameter(const std::string& option, const HybridSystem& system, SweptRange& range);
 
-// Work as commands for the shell, and doing it on several processors. What is done leaves a stamp, and is not done
-// again by a later run with the same commands.
-
-/// Commands one after the other, which make the files of one name in a folder.
-struct CommandJob {
-  std::string name;                  ///< of its stamp and its log in the folder
-  std::vector<std::string> lines;    ///< as a user would type them
-  std::vector<std::string> inputs;   ///< files that other jobs make
-  std::vector<std::string> outputs;  ///< files that it makes
-};
-
-struct JobResult {
-  bool was_run = false;  ///< false: not begun, for the time was over or a signal has come
-  bool succeeded = false;
-  std::string log;  ///< what the commands wrote
-};
-
-class JobRunner {
- public:
-  /// At most `workers` jobs at a time, their stamps and logs in `folder`. No job is begun once `is_over` says so.
-  JobRunner(std::string folder, int workers, std::function<bool()> is_over)
-      : folder_(std::move(folder)), workers_(workers), is_over_(std::move(is_over)) {}
-
-  /// The results in the order of the jobs, whichever is ready first. Throws ComputationError where no process can be
-  /// made.
-  std::vector<JobResult> run(const std::vector<CommandJob>& jobs);
-
- private:
-  struct Process;
-  void begin_line(const CommandJob& job, Process& process) const;
-  std::string path(const CommandJob& job, const char* ending) const { return folder_ + "/." + job.name + ending; }
-
-  std::string folder_;
-  int workers_;
-  std::function<bool()> is_over_;
-};
-
 // The commands of an exploration, as jobs: what they have in common, and which one follows what.
 //
 // All files are in one folder; every command is one that a user could have typed beside it.
@@ -96,9 +60,8 @@ class JobRunner {
 struct SwitchPoint {
   std::string branch;
   int label = 0;
-  std::string type;        ///< GR, PD, ...
-  double parameter = 0.0;  ///< the value of the explored one
-  std::string command;     ///< run/run_remarks.hpp
+  std::string type;   ///< GR, PD, ...
+  Commands commands;  ///< that follow what begins there (run/run_remarks.hpp)
 };
 
 /// A labelled orbit of a branch, and a label of a known branch from which its orbits at the same value are corrected.
@@ -111,11 +74,18 @@ struct OrbitComparison {
   int points = 0;      ///< at most so many from the known label
 };
 
+/// The files of the user that all commands, or those of simulations, read.
+struct GivenFiles {
+  std::vector<std::string> problem;
+  std::vector<std::string> constants;
+};
+
 class ExplorationCommands {
  public:
   /// `system` must outlive this; `has_added_section`: tchat has cut it. Throws UserError where the request's range is
-  /// none, or not one of a parameter.
-  ExplorationCommands(const ExploreRequest& request, const HybridSystem& system, bool has_added_section);
+  /// none, or not one of a parameter, and where its folder cannot be one of files that a Makefile names.
+  ExplorationCommands(const ExploreRequest& request, const HybridSystem& system, bool has_added_section,
+                      GivenFiles given);
 
   const SweptRange& range() const { return range_; }
   const std::string& folder() const { return folder_; }
@@ -126,60 +96,56 @@ class ExplorationCommands {
   /// The path of a file in the folder; `letter` is p, q, d or r.
   std::string file(char letter, const std::string& name) const { return folder_ + "/" + letter + "." + name; }
   std::string path(const std::string& name) const { return folder_ + "/" + name; }
-  /// "PAR(alpha)=3.05"
-  std::string at_value(double value) const;
+  /// The p-, q-, d- and r-file of a branch.
+  std::vector<std::string> files_of(const std::string& name) const;
+  /// What the commands at a label make for the branch of a name.
+  NextNames names_of(const std::string& name) const { return {path(name), path(name + "_start"), path(name)}; }
 
   CommandJob sweep() const;
   /// From each of these states, as --state takes them, at every value.
   CommandJob sweep_from(const std::vector<std::string>& states) const;
   /// A branch through what a simulation settles on from a state: `words` of `tchat simulate` that give it.
-  CommandJob start(const std::string& name, double value, const std::string& words, bool rests) const;
-  /// What begins at a labelled point.
-  CommandJob switching(const SwitchPoint& at) const;
+  CommandJob start(const std::string& name, double value, const Command& words, bool rests) const;
+  /// What begins at a labelled point, whose commands make the files of names_of(name).
+  CommandJob switching(const std::string& name, const SwitchPoint& at) const;
   /// One direction of a switch that goes in both: with its DS, or with this one, which is for the other direction.
-  CommandJob one_direction(const CommandJob& both, std::optional<double> other_ds) const;
+  CommandJob one_direction(const std::string& name, const CommandJob& both, std::optional<double> other_ds) const;
   static bool goes_in_both_directions(const CommandJob& job);
   /// The run along the known branch.
   CommandJob correction(const OrbitComparison& at) const;
   /// The equilibrium of a label as that of another field.
-  std::string in_other_field(const std::string& branch, int label, int field) const;
+  Command in_other_field(const std::string& name, const std::string& branch, int label, int field) const;
   /// Orbits with one impact in so many returns that begin at a grazing point.
-  CommandJob born(const SwitchPoint& at, int returns) const;
+  CommandJob born(const std::string& name, const SwitchPoint& at, int returns) const;
   /// The same at a label of the files `source`, to those of `name`.
-  std::vector<std::string> born_lines(const std::string& source, const std::string& label, int returns,
-                                      const std::string& name) const;
-  /// "tchat simulate ..." of an attractor, with the `words` that begin on it.
-  std::string show(double value, const std::string& words) const;
-  /// The p-, q-, d- and r-file of a branch.
-  std::vector<std::string> files_of(const std::string& name) const;
+  Commands born_commands(const std::string& source, const std::string& label, int returns,
+                         const std::string& name) const;
+  /// `tchat simulate` of an attractor, with the `words` that begin on it.
+  Command show(double value, const Command& words) const;
+  /// A job of runs from the files of `source`.
+  CommandJob job_from(const std::string& source, const std::string& name, Commands commands) const;
   /// KEY=VALUE of the command line for all runs.
-  const std::vector<std::string>& constants() const { return constants_; }
+  const Command& constants() const { return constants_; }
 
  private:
-  std::vector<std::string> run_words(bool rests = false) const;
-  CommandJob sweep_job(const std::string& name, const std::vector<std::string>& states, const char* options) const;
+  Command run_words(bool rests = false) const;
+  /// The same without DS: its sign has been chosen.
+  Command run_words_without_step() const;
+  CommandJob sweep_job(const std::string& name, const std::vector<std::string>& states, const Command& options) const;
+  CommandJob job(const std::string& name, Commands commands, std::vector<std::string> inputs) const;
+  std::string at_value(double value) const;
 
   const ExploreRequest& request_;
-  std::string watched_;  ///< words that watch all events, where none has a jump: a contact changes nothing
+  std::string watched_;  ///< "[1,2]", all events, where none has a jump: a contact changes nothing
   SweptRange range_;
   std::string folder_;
   std::string problem_;
-  std::string constants_option_;
-  std::vector<std::string> parameters_, constants_;  ///< KEY=VALUE of the command line
+  GivenFiles given_;
+  Command parameters_, constants_;  ///< KEY=VALUE of the command line
   std::vector<std::string> monitors_;
 };
 
-/// Words quoted for the shell, with a blank before each.
-std::string shell_words(const std::vector<std::string>& words);
 /// Does a word of the command line set a parameter?
 bool sets_parameter(const std::string& word);
-
-// The Makefile that makes the files of an exploration by plain commands.
-
-/// `jobs` come after those that make their inputs, and before `last` ones. Target `branches` makes the files of `jobs`,
-/// `all` those of both, `part` a part of PARTS of the branches, number PART from 1: no file belongs to two parts, so
-/// that parts can be made at the same time by processes that know nothing of each other.
-std::string exploration_makefile(const std::vector<CommandJob>& jobs, const std::vector<CommandJob>& last,
-                                 const std::string& folder);
 
 }  // namespace tchat

@@ -63,6 +63,10 @@ std::string counts_json(const std::map<std::string, int>& counts) {
   return "{" + text + "}";
 }
 
+std::string lines_json(const CommandJob& job) {
+  return json_list(job.commands, [](const Command& command) { return json(shell_line(command)); });
+}
+
 }  // namespace
 
 std::vector<std::string> signatures_of(const PointFile& points) {
@@ -102,9 +106,14 @@ std::string branch_json(const ExploredBranch& branch) {
                        json(label.remark), json(label.curve));
   });
   return fmt::format(
-      R"({{"name": {}, "parent": {}, "origin": {}, "from": {}, "to": {}, "signatures": {}, "labels": {}, "commands": {}}})",
+      R"({{"name": {}, "parent": {}, "origin": {}, "from": {}, "to": {}, "signatures": {}, "ends": {}, "labels": {}, "commands": {}}})",
       json(branch.name), json(branch.parent), json(branch.origin), json(branch.from), json(branch.to),
-      json_list(branch.signatures), labels, json_list(branch.job.lines));
+      json_list(branch.signatures),
+      json_list(branch.ends,
+                [](const RecordedEnd& end) {
+                  return fmt::format(R"({{"reason": {}, "text": {}}})", json(end.reason), json(end.text));
+                }),
+      labels, lines_json(branch.job));
 }
 
 std::string tree_text(const ExploredDiagram& diagram) {
@@ -115,7 +124,7 @@ std::string tree_text(const ExploredDiagram& diagram) {
       const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
       text += fmt::format("{}{}  {:.6g} to {:.6g}, {}\n", indent, branch.name, branch.from, branch.to, branch.origin);
       for (const ExploredLabel& label : branch.labels) text += fmt::format("{}    {}\n", indent, label_text(label));
-      for (const std::string& end : branch.ends) text += fmt::format("{}    ends: {}\n", indent, end);
+      for (const RecordedEnd& end : branch.ends) text += fmt::format("{}    ends: {}\n", indent, end.text);
       add(branch.name, depth + 1);
     }
   };
@@ -129,7 +138,7 @@ std::string tree_text(const ExploredDiagram& diagram) {
         fmt::format("On no branch: attractor {} ({}{}), {} times from {:.6g} to {:.6g}{}\n", one.attractor, one.kind,
                     one.segments > 0 ? fmt::format(", {} segments", one.segments) : "", one.count, one.first, one.last,
                     (one.leads_to.empty() ? "" : "; a start there leads to " + one.leads_to) +
-                        (one.command.empty() ? "" : ": " + one.command));
+                        (one.command.empty() ? "" : ": " + shell_line(one.command)));
   text += left_text(diagram);
   if (!diagram.complete) text += "Not complete: the same command goes on.\n";
   return text;
@@ -140,7 +149,7 @@ std::string tree_json(const ExploredDiagram& diagram, const std::string& further
     return fmt::format(
         R"({{"attractor": {}, "kind": {}, "count": {}, "first": {}, "last": {}, "segments": {}, "leads_to": {}, "command": {}}})",
         json(one.attractor), json(one.kind), json(one.count), json(one.first), json(one.last), json(one.segments),
-        json(one.leads_to), json(one.command));
+        json(one.leads_to), json(one.command.empty() ? "" : shell_line(one.command)));
   });
   return fmt::format(
       "{{\"parameter\": {}, \"quantity\": {}, \"complete\": {}, \"periodic\": {}, \"at_rest\": {}, \"on_branches\": "
@@ -174,8 +183,8 @@ std::string end_text(const CurveEnd& end) {
 }
 
 std::string curve_text(const ExploredCurves& all, const ExploredCurve& curve) {
-  std::string text = fmt::format("{}  {} curve from {}: {}; {}\n", curve.name, curve.kind, curve.origin,
-                                 range_text(all, curve), fmt::join(curve.signatures, ", "));
+  std::string text = fmt::format("{}  {}: {}; {}\n", curve.name, origin_text(curve), range_text(all, curve),
+                                 fmt::join(curve.signatures, ", "));
   if (curve.inadmissible > 0)
     text += fmt::format("    {} of {} points are inadmissible\n", curve.inadmissible, curve.points);
   for (const CurveEnd& end : curve.ends) text += "    " + end_text(end) + "\n";
@@ -218,7 +227,7 @@ std::string curve_json(const ExploredCurve& curve) {
       json_value(curve.name), json_value(curve.kind), json_value(curve.parent), json_value(curve.origin),
       json_value(curve.first_from), json_value(curve.first_to), json_value(curve.second_from),
       json_value(curve.second_to), curve.points, curve.inadmissible, json_list(curve.signatures),
-      json_list(curve.ends, end_json), json_list(curve.labels, label_json), json_list(curve.job.lines));
+      json_list(curve.ends, end_json), json_list(curve.labels, label_json), lines_json(curve.job));
 }
 
 std::string joint_json(const JoinedPoint& point) {
@@ -231,6 +240,10 @@ std::string joint_json(const JoinedPoint& point) {
 }
 
 }  // namespace
+
+std::string origin_text(const ExploredCurve& curve) {
+  return fmt::format("{} curve {} {}", curve.kind, curve.is_born ? "born at" : "from", curve.origin);
+}
 
 std::string range_text(const ExploredCurves& all, const ExploredCurve& curve) {
   return fmt::format("{} {:.6g} to {:.6g}, {} {:.6g} to {:.6g}", all.first, curve.first_from, curve.first_to,

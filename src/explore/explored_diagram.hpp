@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "explore/exploration_commands.hpp"
+#include "files/diagnostics_file.hpp"
 #include "files/point_file_reader.hpp"
 #include "files/table_writer.hpp"
 
@@ -46,18 +47,18 @@ struct ExploredBranch {
   bool has_returns = false;     ///< one impact in several returns to grazing, or from such a branch
   double from = 0.0, to = 0.0;  ///< range of the parameter
   std::vector<std::string> signatures;
-  std::vector<std::string> ends;  ///< why each direction ended
+  std::vector<RecordedEnd> ends;  ///< why each direction ended
   std::vector<ExploredLabel> labels;
   CommandJob job;
 };
 
 /// An attractor of the sweep that lies on no branch.
 struct UnexplainedAttractor {
-  std::string attractor;  ///< "a3": attractor 3 of the sweep; "b2": of the further starts
+  std::string attractor;  ///< "a3": attractor 3 of the sweep; "s2": of the further starts
   std::string kind;
   double first = 0.0, last = 0.0;  ///< values at which it is
   int count = 0;
-  std::string command;   ///< that shows it at the first value
+  Command command;       ///< that shows it at the first value
   int segments = 0;      ///< of a periodic one: more than --segments are not followed
   std::string leads_to;  ///< the branch that a start on it has led to nevertheless
 };
@@ -68,7 +69,7 @@ struct ExploredDiagram {
   std::string quantity;                ///< along the picture's y-axis; "": that of tchat plot
   std::vector<CommandJob> last_jobs;   ///< picture and page
   std::vector<ExploredBranch> branches;
-  std::vector<std::string> joins;     ///< "a1_PD3: a2 again"
+  std::vector<std::string> joins;     ///< "b4 (PD 3 of b1 at ...): b2 again"
   std::vector<std::string> failures;  ///< commands that failed, with their messages
   std::vector<UnexplainedAttractor> unexplained;
   int periodic = 0, at_rest = 0, on_branches = 0;  ///< attractors over all values and starts
@@ -83,7 +84,7 @@ std::vector<std::string> signatures_of(const PointFile& points);
 /// Sets signatures and range of a branch from its p-file. Points that a clipped run has beyond `range` do not count.
 void describe_points(const PointFile& points, const SweptRange& range, ExploredBranch& branch);
 
-/// "GR 2 at 3.035 -> a2"
+/// "GR 2 at 3.035 -> b2"
 std::string label_text(const ExploredLabel& label);
 std::string branch_json(const ExploredBranch& branch);
 
@@ -112,10 +113,11 @@ struct CurveEnd {
 };
 
 struct ExploredCurve {
-  std::string name;    ///< of its files in the folder
-  std::string kind;    ///< LP, PD, ..., GR
-  std::string parent;  ///< the branch, slice or curve whose label it is from
-  std::string origin;  ///< "PD 3 of a2"
+  std::string name;      ///< of its files in the folder
+  std::string kind;      ///< LP, PD, ..., GR
+  std::string parent;    ///< the branch, slice or curve whose label it is from
+  std::string origin;    ///< "PD 3 of b2"
+  bool is_born = false;  ///< it begins there, and does not pass through
   double first_from = 0.0, first_to = 0.0, second_from = 0.0, second_to = 0.0;
   int points = 0, inadmissible = 0;
   bool has_returns = false;  ///< from a slice, or a branch that has
@@ -142,13 +144,15 @@ struct ExploredCurves {
   std::vector<ExploredCurve> curves;
   std::vector<ExploredBranch> slices;  ///< branches over `first` that start beside a point of a grazing curve
   std::vector<JoinedPoint> joints;
-  std::map<std::string, std::vector<std::string>> without;  ///< by reason, labels that no curve follows: "BP 2 of a1"
-  std::vector<std::string> again;                           ///< "a2_LP4_curve: a1_LP3_curve again"
+  std::map<std::string, std::vector<std::string>> without;  ///< by reason, labels that no curve follows: "BP 2 of b1"
+  std::vector<std::string> again;                           ///< "c4 (LP 4 of b2): c1 again"
   std::vector<std::string> failures;                        ///< commands that failed, with their last message
   int left = 0;                                             ///< curves and slices beyond the budget
   int budget = 0;
 };
 
+/// "PD curve from PD 3 of b2", "LP curve born at GPD 4 of c1"
+std::string origin_text(const ExploredCurve& curve);
 /// "alpha 1 to 5, omega 1.4 to 2.4"
 std::string range_text(const ExploredCurves& all, const ExploredCurve& curve);
 

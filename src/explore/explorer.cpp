@@ -2,24 +2,27 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <iostream>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 
 #include "base/messages.hpp"
 #include "base/words.hpp"
-#include "explore/branch_ends.hpp"
 #include "explore/branch_recognition.hpp"
 #include "explore/curve_rounds.hpp"
 #include "explore/diagram_picture.hpp"
 #include "explore/exploration_commands.hpp"
 #include "explore/orbit_catalogue.hpp"
+#include "explore/run_record.hpp"
 #include "files/dat_file.hpp"
 #include "files/replaced_file.hpp"
 #include "files/solution_file_reader.hpp"
+#include "plugin/plugin_build.hpp"
 #include "plugin/problem_setup.hpp"
 #include "run/run_remarks.hpp"
 #include "settings/constants_file.hpp"
@@ -36,9 +39,11 @@ namespace fs = std::filesystem;
 /// A switch that is to be followed, and what it begins at.
 struct BranchCandidate {
   ExploredBranch branch;
-  std::size_t parent = 0;  ///< of the diagram's branches; beyond them without one
-  std::size_t label = 0;   ///< of the parent's labels
-  int returns = 1;         ///< at grazing, one impact in so many
+  std::size_t parent = 0;                              ///< of the diagram's branches; beyond them without one
+  std::size_t label = 0;                               ///< of the parent's labels
+  int returns = 1;                                     ///< at grazing, one impact in so many
+  std::string attractor;                               ///< without a parent
+  std::function<CommandJob(const std::string&)> make;  ///< its job, for files of this name
 };
 
 class Explorer {
@@ -48,7 +53,8 @@ class Explorer {
       : request_(request),
         screen_(screen),
         loaded_(load_for_simulation(simulation_request(request), progress)),
-        commands_(request, loaded_.library->system(), loaded_.library->has_added_section()),
+        commands_(request, loaded_.library->system(), loaded_.library->has_added_section(), given_files()),
+        lock_(lock_output(commands_.folder())),
         begun_(std::chrono::steady_clock::now()),
         runner_(commands_.folder(), request.workers, [this, interrupted] { return interrupted() || is_late(); }),
         interrupted_(interrupted) {
@@ -57,7 +63,6 @@ class Explorer {
   }
 
   int explore() {
-    fs::create_directories(commands_.folder());
     if (!sweep()) return finish();
     follow(seeds());
     for (bool found = true; found && goes_on();) found = follow(more_seeds());
@@ -83,8 +88,19 @@ class Explorer {
             runner_,
             diagram_,
             [this] { return goes_on(); },
-            [this](const std::string& text) { show(text); }};
+            [this](const std::string& text) { show(text); },
+            [this] { return next_name(); }};
   }
+
+  /// What all commands read.
+  GivenFiles given_files() const {
+    GivenFiles given{files_of_problem(request_.problem.value_or(request_.name), loaded_.plugin), {}};
+    if (!loaded_.constants.path.empty()) given.constants.push_back(loaded_.constants.path);
+    return given;
+  }
+
+  /// Branches have numbers in the order in which they are tried.
+  std::string next_name() { return fmt::format("b{}", ++named_); }
 
   /// Of the diagram over the first one.
   ParameterVector parameters() const {
@@ -116,21 +132,22 @@ class Explorer {
       diagram_.complete = false;
       return false;
     }
-    if (!result.succeeded) throw ComputationError(fmt::format("the sweep failed:\n{}", result.log));
-    sweeps_.push_back({sweeps_.empty() ? "a" : "b", AttractorSamples(job.outputs.front(), loaded_.library->system()),
+    if (!result.succeeded()) throw ComputationError("the sweep failed: " + result.failure);
+    sweeps_.push_back({sweeps_.empty() ? "a" : "s", AttractorSamples(job.outputs.front(), loaded_.library->system()),
                        commands_.monitors(), loaded_.library->has_added_section()});
     return true;
   }
 
-  /// A branch through an attractor.
+  /// A branch through an attractor of this name.
   BranchCandidate start_at(const SweepAttractor& attractor, const std::string& name, double value,
-                           const std::string& words) const {
+                           const Command& words) const {
     BranchCandidate candidate;
     candidate.parent = std::string::npos;
-    candidate.branch.name = name;
-    candidate.branch.origin =
-        fmt::format("attractor {} at {} = {:.6g}", name.substr(0, name.find('_')), diagram_.parameter, value);
-    candidate.branch.job = commands_.start(name, value, words, attractor.kind == AttractorKind::rest);
+    candidate.attractor = name;
+    candidate.branch.origin = fmt::format("attractor {} at {} = {:.6g}", name, diagram_.parameter, value);
+    candidate.make = [this, value, words, rests = attractor.kind == AttractorKind::rest](const std::string& branch) {
+      return commands_.start(branch, value, words, rests);
+    };
     return candidate;
   }
 
@@ -166,9 +183,8 @@ class Explorer {
           return;
         const std::string name = fmt::format("{}{}", sweep.letter, attractor.number);
         if (!numbers.insert(attractor.number).second || !tried_.insert({name, sample.value}).second) return;
-        const std::string words = sweep.samples.words_of(sample);
-        if (!words.empty())
-          list.push_back(start_at(attractor, fmt::format("{}_{}", name, tried_.size()), sample.value, words));
+        const Command words = sweep.samples.words_of(sample);
+        if (!words.empty()) list.push_back(start_at(attractor, name, sample.value, words));
       });
     }
     return list;
@@ -183,7 +199,11 @@ class Explorer {
         break;
       }
       std::vector<CommandJob> jobs;
-      for (const BranchCandidate& candidate : round) jobs.push_back(candidate.branch.job);
+      for (BranchCandidate& candidate : round) {
+        candidate.branch.name = next_name();
+        candidate.branch.job = candidate.make(candidate.branch.name);
+        jobs.push_back(candidate.branch.job);
+      }
       const std::vector<JobResult> results = runner_.run(jobs);
       std::vector<BranchCandidate> next;
       for (std::size_t i = 0; i < round.size(); ++i) found = take(round[i], results[i], next) || found;
@@ -252,7 +272,7 @@ class Explorer {
 
   /// Of a switch in both directions the one that is new, where all of the other one is on a known branch.
   std::optional<BranchCandidate> new_direction(const BranchCandidate& candidate,
-                                               const std::vector<KnownBranch>& known) const {
+                                               const std::vector<KnownBranch>& known) {
     if (!is_switch_in_both_directions(candidate) || known.size() != 2) return std::nullopt;
     const bool first_is_known = !known[0].name.empty();
     const KnownBranch& other = known[first_is_known ? 0 : 1];
@@ -261,8 +281,8 @@ class Explorer {
     ExploredBranch& branch = one.branch;
     std::optional<double> ds;
     if (first_is_known) ds = -read_constants_file(commands_.file('r', branch.name)).step;
-    branch.job = commands_.one_direction(branch.job, ds);
-    branch.name = branch.job.name;
+    branch.name = next_name();
+    branch.job = commands_.one_direction(branch.name, branch.job, ds);
     branch.origin += fmt::format(", the other direction is {}", other.name);
     return one;
   }
@@ -271,12 +291,13 @@ class Explorer {
   bool take(const BranchCandidate& candidate, const JobResult& result, std::vector<BranchCandidate>& next) {
     ExploredBranch branch = candidate.branch;
     if (!result.was_run) return interrupt(candidate);
-    if (!result.succeeded) {
-      set_outcome(candidate, "", "failed: " + failure_text(result.log));
-      diagram_.failures.push_back(fmt::format("{} ({}): {}", branch.name, branch.origin, failure_text(result.log)));
+    if (!result.succeeded()) {
+      set_outcome(candidate, "", "failed: " + result.failure);
+      diagram_.failures.push_back(fmt::format("{} ({}): {}", branch.name, branch.origin, result.failure));
       return false;
     }
-    if (candidate.returns > 1 && admissible_points(commands_.file('d', branch.name)).only_at_start) return false;
+    const RunRecord record = run_record(commands_.file('d', branch.name));
+    if (candidate.returns > 1 && record.only_at_start) return false;
     const PointFile points = read_point_file(commands_.file('p', branch.name));
     std::vector<CataloguedSection> sections = catalogued_sections(branch.name, points, commands_.monitors());
     const std::optional<std::vector<KnownBranch>> found =
@@ -284,7 +305,7 @@ class Explorer {
     if (!found) return interrupt(candidate);
     if (const std::string known = branch_of_all(sections, *found); !known.empty()) {
       set_outcome(candidate, known, "");
-      if (candidate.parent >= diagram_.branches.size()) met_[branch.name.substr(0, branch.name.find('_'))] = known;
+      if (candidate.parent >= diagram_.branches.size()) met_[candidate.attractor] = known;
       diagram_.joins.push_back(fmt::format("{} ({}): {} again", branch.name, branch.origin, known));
       return false;
     }
@@ -294,11 +315,11 @@ class Explorer {
     }
     if (const std::optional<BranchCandidate> one = new_direction(candidate, *found)) {
       const JobResult alone = runner_.run({one->branch.job}).front();
-      if (!alone.was_run || alone.succeeded) return take(*one, alone, next);
+      if (!alone.was_run || alone.succeeded()) return take(*one, alone, next);
     }
     for (CataloguedSection& section : sections) catalogue_.add(std::move(section));
     describe_points(points, commands_.range(), branch);
-    branch.ends = branch_ends(result.log);
+    branch.ends = record.ends;
     set_outcome(candidate, branch.name, "");
     diagram_.branches.push_back(branch);
     show(fmt::format("{}: {}, {} = {:.6g} to {:.6g}\n", branch.name, branch.origin, diagram_.parameter, branch.from,
@@ -321,23 +342,26 @@ class Explorer {
       ExploredLabel label{
           solution.label, type, stored_parameter(solution, settings.free_parameters.front()), "", "", ""};
       diagram_.branches[at].labels.push_back(label);
-      const std::string command = are_tori ? "" : command_at(solution, type, settings, name);
-      if (!command.empty()) add_switch(at, type, command, settings, next);
+      if (!are_tori && !commands_at(solution, type, settings, name, name).empty())
+        add_switch(at, solution, type, settings, next);
     }
   }
 
-  /// The command that follows what begins at a label; "" where nothing does.
-  std::string command_at(const LabelledSolution& solution, const std::string& type, const RunSettings& settings,
-                         const std::string& name) const {
+  /// The commands that follow what begins at a label, to files of `name`; none where nothing is followed.
+  Commands commands_at(const LabelledSolution& solution, const std::string& type, const RunSettings& settings,
+                       const std::string& parent, const std::string& name) const {
     const HybridSystem& system = loaded_.library->system();
-    if (type == "LP" || type == "EX") return "";
-    if (type == "GR" && loaded_.library->has_added_section()) return "";  // no jump: contact changes nothing
+    if (type == "LP" || type == "EX") return {};
+    if (type == "GR" && loaded_.library->has_added_section()) return {};  // no jump: contact changes nothing
     if (type == "BE") {
       const int field = other_field_at_rest(system, solution, settings.segments.front().index.field);
-      return field == 0 ? "" : commands_.in_other_field(name, solution.label, field);
+      return field == 0 ? Commands{} : Commands{commands_.in_other_field(name, parent, solution.label, field)};
     }
-    return next_command({solution.label, basic_type(solution.type), solution.kind}, settings, system,
-                        commands_.problem(), commands_.path(name));
+    const NextStart start{solution.label, basic_type(solution.type), solution.kind};
+    Commands commands =
+        next_commands(start, settings, system, commands_.problem(), commands_.path(parent), commands_.names_of(name));
+    if (!commands.empty() && commands.back().front() != "run") commands.clear();
+    return commands;
   }
 
   /// How many segments the branch that begins at a label has, at least.
@@ -347,8 +371,8 @@ class Explorer {
     return type == "PD" && !is_smooth ? 2 * own : own;
   }
 
-  void add_switch(std::size_t at, const std::string& type, const std::string& command, const RunSettings& settings,
-                  std::vector<BranchCandidate>& next) {
+  void add_switch(std::size_t at, const LabelledSolution& solution, const std::string& type,
+                  const RunSettings& settings, std::vector<BranchCandidate>& next) {
     const ExploredBranch& parent = diagram_.branches[at];
     const ExploredLabel& label = parent.labels.back();
     BranchCandidate candidate;
@@ -364,12 +388,14 @@ class Explorer {
     if (segments_after(type, settings) > request_.segments) return leave(candidate, segments_budget());
     branch.origin =
         fmt::format("{} {} of {} at {} = {:.6g}", type, label.label, parent.name, diagram_.parameter, label.parameter);
-    const SwitchPoint at_label{parent.name, label.label, type, label.parameter, command};
-    branch.job = commands_.switching(at_label);
-    branch.name = branch.job.name;
+    candidate.make = [this, solution, type, settings, from = parent.name](const std::string& name) {
+      return commands_.switching(name, {from, solution.label, type, commands_at(solution, type, settings, from, name)});
+    };
     next.push_back(std::move(candidate));
-    if (command.find(" --to impacting ") != std::string::npos && !diagram_.branches[at].has_returns)
-      add_returns(next.back(), at_label, next);
+    const Commands commands = commands_at(solution, type, settings, parent.name, "");
+    const bool adds_impact =
+        std::find(commands.front().begin(), commands.front().end(), "impacting") != commands.front().end();
+    if (adds_impact && !parent.has_returns) add_returns(next.back(), {parent.name, solution.label, type, {}}, next);
   }
 
   /// At a grazing point, orbits with one impact in more than one return.
@@ -378,16 +404,11 @@ class Explorer {
     candidate.branch.has_returns = true;
     for (candidate.returns = 2; candidate.returns <= request_.returns.value_or(1); ++candidate.returns) {
       candidate.branch.origin = fmt::format("one impact in {} returns, {}", candidate.returns, origin);
-      candidate.branch.job = commands_.born(at, candidate.returns);
-      candidate.branch.name = candidate.branch.job.name;
+      candidate.make = [this, at, returns = candidate.returns](const std::string& name) {
+        return commands_.born(name, at, returns);
+      };
       next.push_back(candidate);
     }
-  }
-
-  static void write(const std::string& path, const std::string& text) {
-    ReplacedFile out(path);
-    out.write(text);
-    out.finish();
   }
 
   /// Writes what has been found, complete or not.
@@ -421,8 +442,8 @@ class Explorer {
   /// O.txt, which is shown as well, and O.json.
   void write_tree(const ExploredCurves& curves) const {
     const std::string text = tree_text(diagram_) + curves_text(curves);
-    write(commands_.folder() + ".txt", text);
-    write(commands_.folder() + ".json", tree_json(diagram_, curves_json(curves)));
+    write_whole_file(commands_.folder() + ".txt", text);
+    write_whole_file(commands_.folder() + ".json", tree_json(diagram_, curves_json(curves)));
     show("\n" + text);
   }
 
@@ -430,14 +451,15 @@ class Explorer {
     const fs::path folder(commands_.folder());
     std::vector<CommandJob> jobs = jobs_of(diagram_);
     for (const CommandJob* const job : curve_jobs(curves)) jobs.push_back(*job);
-    write((folder.parent_path() / ("Makefile." + folder.filename().string())).string(),
-          exploration_makefile(jobs, diagram_.last_jobs, commands_.folder()));
+    write_whole_file((folder.parent_path() / ("Makefile." + folder.filename().string())).string(),
+                     makefile_text(jobs, diagram_.last_jobs, commands_.folder()));
   }
 
   ExploreRequest request_;
   std::ostream& screen_;
   LoadedProblem loaded_;
   ExplorationCommands commands_;
+  std::unique_ptr<FileLock> lock_;
   std::chrono::steady_clock::time_point begun_;
   JobRunner runner_;
   std::function<bool()> interrupted_;
@@ -447,6 +469,7 @@ class Explorer {
   std::set<std::pair<std::string, double>> tried_;
   std::map<std::string, std::string> met_;  // by attractor, the known branch that a start on it led to
   std::optional<CurveRounds> curves_;
+  int named_ = 0;  // branches that have a name
 };
 
 }  // namespace

@@ -157,6 +157,12 @@ std::string format_note(int branch, int point, std::string_view text) {
   return note + '\n';
 }
 
+std::string format_branch_end(int branch, int point, std::string_view reason, std::string_view text) {
+  std::string line = harmless(text);
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  return fmt::format("{}  END {}: {}\n", prefix(branch, point), reason, line);
+}
+
 std::string format_end_of_run() { return format_bar() + std::string(end_of_run) + '\n'; }
 
 bool ends_complete_run(std::string_view text) {
@@ -212,6 +218,8 @@ class Blocks {
       multipliers_.clear();
     else if (contains(words, "NOTE:"))
       take_note(line, words);
+    else if (words.size() > 3 && words[2] == "END" && words[3].ends_with(':'))
+      take_end(line, words);
     else if (contains(words, "Iterations"))
       take_iterations(words);
     else
@@ -243,6 +251,15 @@ class Blocks {
     if (text != std::string_view::npos) points_.back().notes.emplace_back(line.substr(text));
     if (const auto note = parse_normal_form(line)) points_.back().normal_form = note;
     take_xi_zeros(words);
+  }
+
+  /// `1  12  END bound: text`
+  void take_end(std::string_view line, const Words& words) {
+    if (points_.empty()) return;
+    const std::string_view reason = words[3].substr(0, words[3].size() - 1);
+    const std::string_view text =
+        line.substr(static_cast<std::size_t>(words[3].data() + words[3].size() - line.data()));
+    points_.back().end = RecordedEnd{std::string(reason), std::string(trimmed(text))};
   }
 
   /// `... xi_1 = 0, xi_2 = 0`

@@ -74,6 +74,10 @@ std::string format_test_functions(const std::vector<TestFunctionLine>& functions
 /// `    1    12  NOTE: text`, further lines of the text indented.
 std::string format_note(int branch, int point, std::string_view text);
 
+/// `    1    12  END bound: text`: why the branch has no further points in this direction. `reason` is a word; `text`
+/// is written on one line.
+std::string format_branch_end(int branch, int point, std::string_view reason, std::string_view text);
+
 /// Bar and the last line of a complete file. Nothing may follow but another run's part.
 std::string format_end_of_run();
 
@@ -85,7 +89,13 @@ bool ends_complete_run(std::string_view text);
 //
 // Only what AUTO's own readers rely on is looked at: the bars of 47 `=` between blocks, the line below a
 // `BR PT TY LAB` heading, lines `Multiplier k re im`, `Eigenvalue k: re im` and `Iterations : n`; and of this program
-// the word `inadmissible` and notes, among them `xi_1 = 0, xi_2 = 0` and that of a normal form.
+// the word `inadmissible`, notes, among them `xi_1 = 0, xi_2 = 0` and that of a normal form, and why a branch ends.
+
+/// Why a branch has no further points in one direction.
+struct RecordedEnd {
+  std::string reason;  ///< a word: end_word() (run/branch_writer.hpp)
+  std::string text;    ///< for people
+};
 
 struct DiagnosticPoint {
   int branch = 0;
@@ -99,6 +109,7 @@ struct DiagnosticPoint {
   std::vector<std::complex<double>> multipliers;  ///< of an equilibrium the eigenvalues
   std::optional<double> parameter;                ///< the first number after the label: ICP(1), to 6 digits
   std::optional<int> iterations;                  ///< Newton iterations
+  std::optional<RecordedEnd> end;                 ///< the branch ends here
 };
 
 /// The points in file order; lines that are not understood are skipped. Throws UserError when the file cannot be read.

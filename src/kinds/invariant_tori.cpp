@@ -189,7 +189,7 @@ std::vector<const ProblemType*> torus_types() {
   ProblemFacts births_at_torus =
       torus_facts(torus_birth, "invariant tori", "the torus that is born at a TR label of periodic orbits", 2);
   births_at_torus.starts_from = periodic_orbit.number;
-  births_at_torus.start_words = "'ICP=[{},rho]'";
+  births_at_torus.start_word = "ICP=[{},rho]";
   static const SwitchRow births(births_at_torus, {PointType::torus}, begin_torus);
   ProblemFacts grazing =
       torus_facts(grazing_torus, "invariant tori in grazing contact",

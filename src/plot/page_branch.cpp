@@ -52,14 +52,13 @@ std::optional<std::string> problem_in(const std::string& constants) {
   }
 }
 
-std::optional<std::string> problem_words(const BranchFile& file, const std::string& plugin,
-                                         const std::string& constants) {
-  if (!plugin.empty()) return problem_arguments(plugin);
+std::optional<Command> known_problem(const BranchFile& file, const std::string& plugin, const std::string& constants) {
+  if (!plugin.empty()) return problem_words(plugin);
   const std::string run = run_path(file.path);
-  if (!source_of(run).empty()) return problem_arguments(run);
-  if (const auto recorded = problem_in(constants)) return problem_arguments(*recorded);
+  if (!source_of(run).empty()) return problem_words(run);
+  if (const auto recorded = problem_in(constants)) return problem_words(*recorded);
   const auto only = only_problem(fs::path(file.path).parent_path());
-  return only ? std::optional(problem_arguments(*only)) : std::nullopt;
+  return only ? std::optional(problem_words(*only)) : std::nullopt;
 }
 
 }  // namespace
@@ -72,13 +71,13 @@ RestartCommand restart_command(const BranchFile& file, const std::string& plugin
   } catch (const UserError&) {
     return {"", "", fmt::format("There is no {} with the constants of the run.", sibling_path(file.path, 'r'))};
   }
-  const auto problem = problem_words(file, plugin, constants);
+  const std::optional<Command> problem = known_problem(file, plugin, constants);
   const std::string run = run_path(file.path);
   const bool has_usual_name = output_path('q', run) == solutions;
   RestartCommand command;
-  command.to_output =
-      fmt::format("tchat run {} -c {} -s {} -o {}_", problem.value_or("PROBLEM"), quoted_for_shell(constants),
-                  quoted_for_shell(has_usual_name ? run : solutions), quoted_for_shell(run));
+  command.to_output = fmt::format("tchat run{} -c {} -s {} -o {}_", shell_words(problem.value_or(Command{"PROBLEM"})),
+                                  quoted_for_shell(constants), quoted_for_shell(has_usual_name ? run : solutions),
+                                  quoted_for_shell(run));
   command.to_label = " IRS=";
   if (!problem)
     command.remark =
@@ -437,8 +436,8 @@ class PageBranchWriter {
     const PointSection& section = file_.sections[s];
     const std::optional<int> principal = section.parameter_of_column(0);
     if (!principal) return "";
-    return birth_words(label_type(section.rows[k].type), section.problem_type, section.is_two_parameter_curve(),
-                       section.parameter_name(*principal));
+    return shell_words(birth_words(label_type(section.rows[k].type), section.problem_type,
+                                   section.is_two_parameter_curve(), section.parameter_name(*principal)));
   }
 
   std::string kind(std::size_t s, const LabelledSolution& solution) const {

@@ -422,10 +422,24 @@ std::string resolve_plugin_of_run(const std::optional<std::string>& given, const
   return resolve_plugin(problem);
 }
 
-std::string problem_arguments(const std::string& plugin) {
+std::vector<std::string> files_of_problem(const std::string& name_or_path, const std::string& library) {
+  const std::string source = source_of(name_or_path);
+  if (source.empty()) return {library};
+  std::vector<std::string> files{source};
+  const BuildPlaces places{fs::absolute(source).parent_path().lexically_normal().string(), ""};
+  const std::optional<BuildStamp> stamp = read_stamp(library);
+  for (const BuildInput& input : stamp ? stamp->files : std::vector<BuildInput>{}) {
+    const fs::path file = input.found_from(places);
+    if (input.root == BuildInput::Root::interface || !is_file(file) || fs::equivalent(file, source)) continue;
+    const fs::path beside = file.lexically_proximate(fs::current_path());
+    files.push_back((beside.native().starts_with("..") ? file : beside).string());
+  }
+  return files;
+}
+
+Command problem_words(const std::string& plugin) {
   const std::string name = fs::path(plugin).stem().string();
-  return name == plugin ? quoted_for_shell(name)
-                        : fmt::format("{} -p {}", quoted_for_shell(name), quoted_for_shell(plugin));
+  return name == plugin ? Command{name} : Command{name, "-p", plugin};
 }
 
 }  // namespace tchat

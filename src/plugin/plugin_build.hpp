@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/command.hpp"
 #include "plugin/compiler.hpp"
 
 namespace tchat {
@@ -56,8 +57,12 @@ std::string resolve_plugin_of_run(const std::optional<std::string>& given, const
 /// The source that a name or path stands for, in the searching order above; "" when there is none.
 std::string source_of(const std::string& name_or_path);
 
+/// The user's files that decide what a problem is, as seen from the working folder: its source with all that it
+/// includes, else the library. `library` is that of resolve_plugin().
+std::vector<std::string> files_of_problem(const std::string& name_or_path, const std::string& library);
+
 /// The words of `tchat run` that name the problem of a plugin: NAME, or NAME -p PATH where NAME alone does not find it.
-std::string problem_arguments(const std::string& plugin);
+Command problem_words(const std::string& plugin);
 
 /// What a problem is called, and its plugin where that is not the one of this name.
 struct NamedProblem {

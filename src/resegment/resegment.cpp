@@ -237,8 +237,8 @@ LabelledOrbit with_section(const ResegmentRequest& request, LabelledOrbit labell
   if (has_section(labelled.settings)) return labelled;
   const bool is_cut = request.kind == ResegmentKind::grazing_curve || request.kind == ResegmentKind::impacting;
   if (!is_cut)
-    require_section(labelled.solution, labelled.settings, system, "the new signature", problem_arguments(problem),
-                    path);
+    require_section(labelled.solution, labelled.settings, system, "the new signature",
+                    shell_words(problem_words(problem)), path);
   labelled.solution = cut_at_contact(labelled.solution, labelled.settings, system, labelled.name);
   labelled.start = start_of(labelled, path);
   return labelled;
@@ -305,10 +305,10 @@ std::vector<std::string> begin_grazing_tori(const ResegmentRequest& request, con
   replace_solution_file(request.output, format_solution(grazing_torus_start(torus)));
   write_whole_file(outputs.constants, keyword_text(settings));
   screen << fmt::format(
-      "{}: a torus in grazing contact, IPS = {} from it on.\n{} and {} written; next: tchat run {} -c {} "
+      "{}: a torus in grazing contact, IPS = {} from it on.\n{} and {} written; next: tchat run{} -c {} "
       "-s {} -o {}_branch\n",
-      name, settings.problem_type, outputs.solutions, outputs.constants, problem_arguments(problem), request.output,
-      request.output, request.output);
+      name, settings.problem_type, outputs.solutions, outputs.constants, shell_words(problem_words(problem)),
+      request.output, request.output, request.output);
   return warnings;
 }
 
@@ -380,8 +380,8 @@ std::vector<std::string> resegment(const ResegmentRequest& asked, std::ostream& 
   write_whole_file(constants_out, keyword_text(settings));
 
   screen << summary(labelled, settings, start.orbit, system)
-         << fmt::format("{} and {} written; next: tchat run {} -c {} {} {} -o {}_branch\n", start_out, constants_out,
-                        problem_arguments(problem), request.output, request.data ? "-d" : "-s", request.output,
+         << fmt::format("{} and {} written; next: tchat run{} -c {} {} {} -o {}_branch\n", start_out, constants_out,
+                        shell_words(problem_words(problem)), request.output, request.data ? "-d" : "-s", request.output,
                         request.output)
          << side;
   for (const std::string& remark : target.remarks) screen << remark << '\n';

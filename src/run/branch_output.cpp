@@ -108,6 +108,7 @@ class DiagnosticsFileOutput final : public BranchOutput {
   }
   void point(const RecordedPoint& point) override {
     const bool is_first = !std::exchange(has_points_, true);
+    last_point_ = point.of_branch.number;
     const bool is_full = point.of_branch.labelled() || (is_first && level() > 0) || level() > 2;
     if (is_full)
       files_.add_diagnostics(newton_history(point) + format_diagnostics_point(point.line, section_.columns) +
@@ -123,6 +124,9 @@ class DiagnosticsFileOutput final : public BranchOutput {
   }
   void note(int point_number, const std::string& text) override {
     files_.add_diagnostics(format_note(section_.branch, point_number, text));
+  }
+  void branch_end(std::string_view reason, const std::string& text) override {
+    files_.add_diagnostics(format_branch_end(section_.branch, last_point_, reason, text));
   }
 
  private:
@@ -207,7 +211,8 @@ class DiagnosticsFileOutput final : public BranchOutput {
   RunFiles& files_;
   std::string short_heading_;
   bool has_points_ = false;  // the section
-  std::string text_;         // of an ordinary point
+  int last_point_ = 0;
+  std::string text_;  // of an ordinary point
   std::vector<double> test_values_;
 };
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <ostream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "continuation/branch.hpp"
@@ -50,6 +51,8 @@ class BranchOutput {
   /// For the user to see at once.
   virtual void message(const std::string& /*text*/) {}
   virtual void end_section() {}
+  /// Why the section has no further points: a word and a text for people.
+  virtual void branch_end(std::string_view /*reason*/, const std::string& /*text*/) {}
 };
 
 /// The outputs of a run, in the order in which they get a point. `files` are open. `screen` may be null (quiet);

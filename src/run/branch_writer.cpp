@@ -75,10 +75,6 @@ void BranchWriter::begin_section(int branch, double step, std::vector<NewtonIter
   for (const auto& output : outputs_) output->begin_section();
 }
 
-void BranchWriter::end_section() {
-  for (const auto& output : outputs_) output->end_section();
-}
-
 /// PAR with the entries that the problem, which has some, sets for output.
 ParameterVector BranchWriter::output_parameters(const Orbit& x) const {
   ParameterVector par = x.par;
@@ -265,6 +261,48 @@ std::string reason_text(const BranchSummary& summary, bool told) {
                   : fmt::format("the first step failed (MX): {}", summary.detail);
   }
 }
+
+}  // namespace
+
+std::string_view end_word(EndReason reason) {
+  switch (reason) {
+    case EndReason::outgrown:
+    case EndReason::unresolved:
+      return "unresolved";
+    case EndReason::no_orbit:
+      return "no_orbit";
+    case EndReason::max_points:
+      return "points";
+    case EndReason::beyond_bound:
+    case EndReason::on_bound:
+      return "bound";
+    case EndReason::special_point:
+      return "special_point";
+    case EndReason::curve_end:
+      return "curve_end";
+    case EndReason::equilibrium:
+      return "equilibrium";
+    case EndReason::closed:
+      return "closed";
+    case EndReason::interrupted:
+      return "interrupted";
+    case EndReason::no_convergence:
+      return "no_convergence";
+    case EndReason::first_step_failed:
+      return "first_step";
+  }
+  return "";
+}
+
+void BranchWriter::end_section(const BranchSummary& summary) {
+  const std::string remark = summary.remark.empty() ? "" : "; " + summary.remark;
+  for (const auto& output : outputs_) {
+    output->branch_end(end_word(summary.reason), reason_text(summary, false) + remark);
+    output->end_section();
+  }
+}
+
+namespace {
 
 /// What was tried at an abnormal end, and what a user might change.
 std::string advice(const BranchSummary& summary) {

@@ -6,6 +6,7 @@
 #include <ostream>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "continuation/branch.hpp"
@@ -38,7 +39,8 @@ class BranchWriter final : public BranchSink {
   /// Points that follow belong to a section of their own, number `branch`, in the direction of `step` (DS).
   /// `correction` are the iterations that led to its first point.
   void begin_section(int branch, double step, std::vector<NewtonIteration> correction);
-  void end_section();
+  /// Records why the section has no further points, and ends it.
+  void end_section(const BranchSummary& summary);
   void point(const BranchPoint& point) override;
   void next_step(int point_number, double ds) override;
   void note(int point_number, const std::string& text) override;
@@ -87,6 +89,9 @@ class BranchWriter final : public BranchSink {
   std::vector<double> largest_values_;  // of each column, so far
   std::set<int> reported_user_functions_;
 };
+
+/// "bound", "points", "closed", ...: the reason in d-files, and in what reads them.
+std::string_view end_word(EndReason reason);
 
 // The paragraph that ends a run: how many points, which are special, why it stopped, how accurate it is.
 

@@ -275,9 +275,10 @@ const ProblemType& type_of(PointType curve) {
 }
 
 [[noreturn]] void refuse_without_pair(const SelectedStart& selected) {
-  throw ComputationError(
-      fmt::format("{} {} of {}: the orbits that are born there have no complex pair of multipliers on the unit circle",
-                  no_curve_begins, selected.label, selected.source));
+  throw NothingBegins(
+      fmt::format("no torus curve begins at label {} of {}: the orbits that are born there have no complex pair of "
+                  "multipliers on the unit circle",
+                  selected.label, selected.source));
 }
 
 BranchSetup prepared(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected,
@@ -316,19 +317,23 @@ BranchSetup from_orbit(const HybridSystem& system, const RunSettings& settings, 
 BranchSetup begin_curve(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected,
                         PointType curve) {
   std::string trouble;
+  bool none_begins = false;
   const auto attempt = [&](bool is_exchanged) -> std::optional<BranchSetup> {
     try {
       const BranchSetup beside = orbit_beside(system, is_exchanged ? exchanged(settings) : settings, selected);
       const RunSettings of_curve = with_branch_mode(beside.settings, orbit_curve.branch_mode);
       return from_orbit(system, is_exchanged ? exchanged(of_curve) : of_curve, selected, beside.start.point, curve);
+    } catch (const NothingBegins& error) {
+      none_begins = true;
+      trouble = error.what();
     } catch (const ComputationError& error) {
-      const std::string why = error.what();
-      if (trouble.empty() || why.starts_with(no_curve_begins)) trouble = why;
-      return std::nullopt;
+      if (trouble.empty()) trouble = error.what();
     }
+    return std::nullopt;
   };
   std::optional<BranchSetup> setup = attempt(false);
   if (!setup) setup = attempt(true);
+  if (!setup && none_begins) throw NothingBegins(trouble);
   if (!setup) throw ComputationError(trouble);
   return std::move(*setup);
 }

@@ -39,14 +39,11 @@ double chosen_frequency(const DefiningSystem& equilibria, const Orbit& x, const 
 // first, with one parameter free (branch_switch.hpp, begin_periodic_orbits()). It is corrected onto the curve on the
 // plane across d, so that e stays: n m + m + 2 unknowns, the conditions of an orbit, that of the curve and the plane.
 
-/// How the message begins where the orbits that are born have no pair of multipliers for a torus curve.
-inline constexpr const char* no_curve_begins = "no torus curve begins at label";
-
 /// Folds. Throws UserError where the label cannot be left so (begin_periodic_orbits(), switch_branch()),
 /// ComputationError when no orbit, or none of the curve, is found near the label.
 BranchSetup begin_fold_curve(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected);
 
-/// Torus bifurcations. The same; where the orbits have no pair of multipliers that is complex, none begins.
+/// Torus bifurcations. The same; throws NothingBegins where the orbits have no pair of multipliers that is complex.
 BranchSetup begin_torus_curve(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected);
 
 }  // namespace tchat

@@ -212,11 +212,11 @@ ContinuationSettings continuation_of(const RunRequest& request, const BranchSetu
 /// Exit status of a branch that ended so; says why on `warnings`.
 int status_of(const BranchSummary& summary, bool strict, std::ostream& warnings) {
   if (summary.reason == EndReason::first_step_failed) {
-    warnings << "tchat: the first step failed: " << summary.detail << '\n';
+    print_failure(warnings, "the first step failed: " + summary.detail);
     return 1;
   }
   if (summary.reason != EndReason::no_convergence || !strict) return 0;
-  warnings << "tchat: the branch ended by MX: " << summary.detail << '\n';
+  print_failure(warnings, "the branch ended by MX: " + summary.detail);
   return ended_by_mx;
 }
 
@@ -243,7 +243,7 @@ class Direction {
     for (const std::string& note : notes) writer.note(1, note);
     BranchSummary summary = follow_on(setup_, setup_.start.point, writer);
     summary.without_contact = setup_.type->facts().stability == StabilityMeaning::without_contact;
-    writer.end_section();
+    writer.end_section(summary);
     return summary;
   }
 
@@ -342,8 +342,8 @@ int run_problem(const RunRequest& request, std::ostream& screen, std::ostream& w
                       files, reports.table, reports.table != nullptr ? progress : nullptr);
 
   const NextCommand next = [&](const BranchWriter::Labelled& label) {
-    return next_command({label.label, label.number, label.kind, setup.type->facts().curve}, constants, system,
-                        problem.name, output);
+    const NextStart start{label.label, label.number, label.kind, setup.type->facts().curve};
+    return shell_line(next_commands(start, constants, system, problem.name, output, names_at(start, output)));
   };
   int status = 0;
   bool closed = false;

@@ -170,27 +170,26 @@ const ProblemType* curve_of(int label_type, int number) {
   return nullptr;
 }
 
-/// Words of `tchat run` that follow the branch or curve at a label; "" where there is none.
-std::string run_words(const NextStart& start, const RunSettings& settings, const HybridSystem& system) {
+/// Words of `tchat run` that follow the branch or curve at a label; none where there is none.
+Command run_words(const NextStart& start, const RunSettings& settings, const HybridSystem& system) {
   const int principal = principal_parameter(settings);
-  if (principal == 0) return "";
+  if (principal == 0) return {};
   const std::string first = system.parameter_name(principal);
-  if (const std::string words = birth_words(start.type, settings.problem_type, false, first); !words.empty())
-    return words;
+  if (const Command words = birth_words(start.type, settings.problem_type, false, first); !words.empty()) return words;
   const int second = other_parameter(principal, settings, system);
-  if (second == 0 || curve_of(start.type, settings.problem_type) == nullptr) return "";
-  return fmt::format(" ISW=2 {}", quoted_for_shell(fmt::format("ICP=[{},{}]", first, system.parameter_name(second))));
+  if (second == 0 || curve_of(start.type, settings.problem_type) == nullptr) return {};
+  return {"ISW=2", fmt::format("ICP=[{},{}]", first, system.parameter_name(second))};
 }
 
 /// The same that follow an extremum of ICP(1), a monitor, in one more parameter.
-std::string extremum_words(const RunSettings& settings, const HybridSystem& system) {
-  if (!settings.conserved.empty()) return "";
+Command extremum_words(const RunSettings& settings, const HybridSystem& system) {
+  if (!settings.conserved.empty()) return {};
   const int first = free_problem_parameters(settings).front();
   const int second = other_parameter(first, settings, system);
-  if (second == 0) return "";
+  if (second == 0) return {};
   const std::string names = fmt::format("{},{},{}", parameter_name(system, settings, settings.free_parameters.front()),
                                         system.parameter_name(first), system.parameter_name(second));
-  return " ISW=2 " + quoted_for_shell("ICP=[" + names + "]");
+  return {"ISW=2", "ICP=[" + names + "]"};
 }
 
 /// Does the end of a segment change neither the state nor the field?
@@ -241,7 +240,7 @@ bool is_held_contact(const UserPointKind& kind, const RunSettings& settings, con
 }
 
 /// Words of `tchat run` that keep the least value of the event function zero, and watch the other ones only.
-std::string held_contact_words(const UserPointKind& kind, const RunSettings& settings) {
+Command held_contact_words(const UserPointKind& kind, const RunSettings& settings) {
   const auto segment = static_cast<std::size_t>(kind.segment - 1);
   const std::string place = settings.segments.size() > 1 ? fmt::format(", {}", kind.segment) : "";
   std::string others;
@@ -250,8 +249,7 @@ std::string held_contact_words(const UserPointKind& kind, const RunSettings& set
     for (const int event : settings.segments[s].monitor)
       if (const bool is_held = s == segment && event == kind.index; (++number, !is_held))
         others += fmt::format("{}{}", others.empty() ? "" : ",", number);
-  return quoted_for_shell(fmt::format("HOLD={{min(h{}{}): 0}}", kind.index, place)) +
-         fmt::format(" ISW=1 'GCIPSI=[{}]'", others);
+  return {fmt::format("HOLD={{min(h{}{}): 0}}", kind.index, place), "ISW=1", fmt::format("GCIPSI=[{}]", others)};
 }
 
 /// Is it where a curve of equilibria in two parameters reaches a surface?
@@ -276,10 +274,10 @@ std::string crossing_curve(const NextStart& start, const RunSettings& settings) 
 }
 
 /// Words of `tchat run` that follow from a label of a curve another one that goes through it, or one that begins there;
-/// "" where there is none.
-std::string words_on_curve(const NextStart& start, const RunSettings& settings) {
-  if (const std::string name = crossing_curve(start, settings); !name.empty()) return " CURVE=" + name;
-  return settings.held.empty() ? birth_words(start.type, settings.problem_type, true, "") : "";
+/// none where there is none.
+Command words_on_curve(const NextStart& start, const RunSettings& settings) {
+  if (const std::string name = crossing_curve(start, settings); !name.empty()) return {"CURVE=" + name};
+  return settings.held.empty() ? birth_words(start.type, settings.problem_type, true, "") : Command{};
 }
 
 /// Why ISW = 2 and two parameters do not follow the points of a label; "" where they do.
@@ -313,35 +311,54 @@ std::string resegmentation_target(const UserPointKind& kind, const RunSettings& 
   return is_impact ? "signature" : "";
 }
 
+/// `tchat run` from a label with the constants of its run.
+Command run_from_label(const NextStart& start, const std::string& problem, const std::string& output) {
+  return words_of({{"run"},
+                   problem_words(problem),
+                   {"-c", output_path('r', output), "-s", output, fmt::format("IRS={}", start.label)}});
+}
+
+/// `tchat run` from what tchat resegment has made.
+Command run_from_files(const std::string& problem, const std::string& name) {
+  return words_of({{"run"}, problem_words(problem), {"-c", name, "-s", name}});
+}
+
+Command resegmentation(const NextStart& start, const std::string& output, const std::string& target,
+                       const std::string& name) {
+  return {"resegment", output_path('q', output), std::to_string(start.label), "--to", target, "-o", name};
+}
+
 }  // namespace
 
-std::string next_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
-                         const std::string& problem, const std::string& output) {
+NextNames names_at(const NextStart& start, const std::string& output) {
+  const std::string name = fmt::format("{}_{}{}", output, type_name(start.type, start.kind), start.label);
+  return {name, name, name + "_branch"};
+}
+
+Commands next_commands(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
+                       const std::string& problem, const std::string& output, const NextNames& names) {
   const ProblemType& type = problem_type(settings);
-  const std::string name =
-      quoted_for_shell(fmt::format("{}_{}{}", output, type_name(start.type, start.kind), start.label));
-  const auto run = [&](const std::string& words) {
-    if (words.empty()) return words;
-    return fmt::format("tchat run {} -c {} -s {} IRS={}{} -o {}", problem_arguments(problem),
-                       quoted_for_shell(output_path('r', output)), quoted_for_shell(output), start.label, words, name);
+  const auto run = [&](const Command& words) {
+    if (words.empty()) return Commands{};
+    return Commands{words_of({run_from_label(start, problem, output), words, {"-o", names.branch}})};
   };
   if (type.facts().in_two_parameters) return run(words_on_curve(start, settings));
-  if (type.facts().curve != 0) return "";
-  const std::string solutions = quoted_for_shell(output_path('q', output));
+  if (type.facts().curve != 0) return {};
   if (const std::string target = resegmentation_target(start.kind, settings, system); !target.empty()) {
     const SolutionFamily& family = type.family();
     const bool is_cut = family.why_not(Analysis::resegmentation, "").empty() && !family.facts().has_several_returns;
-    if (!is_cut) return "";
-    return fmt::format("tchat resegment {} {} --to {} -o {} && tchat run {} -c {} -s {} -o {}_branch", solutions,
-                       start.label, target, name, problem_arguments(problem), name, name, name);
+    if (!is_cut) return {};
+    return {resegmentation(start, output, target, names.start),
+            words_of({run_from_files(problem, names.start), {"-o", names.branch_after_start}})};
   }
   if (start.kind.kind == UserPointKind::rule)
-    return fmt::format("tchat simulate {} -s {} IRS={} --dat {}", problem_arguments(problem), quoted_for_shell(output),
-                       start.label, name);
+    return {words_of({{"simulate"},
+                      problem_words(problem),
+                      {"-s", output, fmt::format("IRS={}", start.label), "--dat", names.branch}})};
   const bool is_extremum = start.kind.kind == UserPointKind::extremum;
-  if ((start.kind.kind != UserPointKind::none && !is_extremum) || !settings.held.empty()) return "";
+  if ((start.kind.kind != UserPointKind::none && !is_extremum) || !settings.held.empty()) return {};
   const bool has_torus = start.type == static_cast<int>(PointType::torus);
-  if (has_torus && settings.segments.front().index.event == no_function) return "";  // a torus needs a section
+  if (has_torus && settings.segments.front().index.event == no_function) return {};  // a torus needs a section
   return run(is_extremum ? extremum_words(settings, system) : run_words(start, settings, system));
 }
 
@@ -353,32 +370,33 @@ bool tangent_section(const UserPointKind& kind, const RunSettings& settings, con
 
 CurveCommand curve_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
                            const std::string& problem, const std::string& output, const std::string& curve) {
-  const std::string run = "tchat run " + problem_arguments(problem);
-  const std::string from_label = fmt::format("{} -c {} -s {} IRS={}", run, quoted_for_shell(output_path('r', output)),
-                                             quoted_for_shell(output), start.label);
-  const std::string to_curve = " -o " + quoted_for_shell(curve);
+  const Command to_curve{"-o", curve};
+  const std::string cut = curve + "_start";
+  const auto from_label = [&](const Command& words, const Command& to) {
+    return words_of({run_from_label(start, problem, output), words, to});
+  };
   const std::string own = type_name(start.type, start.kind);
   if (is_held_contact(start.kind, settings, system))
-    return {fmt::format("{} {}{}", from_label, held_contact_words(start.kind, settings), to_curve), "", own};
+    return {{from_label(held_contact_words(start.kind, settings), to_curve)}, "", own};
   const std::string no_grazing =
       is_grazing(start.kind) ? why_no_grazing_curve(start.kind, settings, system) : "no contact";
-  if (no_grazing.empty()) {
-    const std::string cut = quoted_for_shell(curve + "_start");
-    return {fmt::format("tchat resegment {} {} --to grazing-curve -o {} && {} -c {} -s {}{}",
-                        quoted_for_shell(output_path('q', output)), start.label, cut, run, cut, cut, to_curve),
-            "", own};
-  }
-  if (is_boundary_of_curve(start, settings)) {  // there ISW = 2 would continue the curve: the point as one of a branch
-    const std::string point = quoted_for_shell(curve + "_start");
-    return {fmt::format("{} ISW=1 NMX=1 -o {} && {} -c {} -s {} IRS=EP1 ISW=2{}", from_label, point, run,
-                        quoted_for_shell(output_path('r', curve + "_start")), point, to_curve),
-            "", own};
-  }
+  if (no_grazing.empty())
+    return {{resegmentation(start, output, "grazing-curve", cut), words_of({run_from_files(problem, cut), to_curve})},
+            "",
+            own};
+  if (is_boundary_of_curve(start, settings))  // there ISW = 2 would continue the curve: the point as one of a branch
+    return {{from_label({"ISW=1", "NMX=1"}, {"-o", cut}),
+             words_of({{"run"},
+                       problem_words(problem),
+                       {"-c", output_path('r', cut), "-s", cut, "IRS=EP1", "ISW=2"},
+                       to_curve})},
+            "",
+            own};
   if (const std::string name = crossing_curve(start, settings); !name.empty())
-    return {fmt::format("{} ISW=2 CURVE={}{}", from_label, name, to_curve), "", name};
+    return {{from_label({"ISW=2", "CURVE=" + name}, to_curve)}, "", name};
   const std::string why_none = why_no_curve(start, settings);
-  if (why_none.empty()) return {from_label + " ISW=2" + to_curve, "", own};
-  return {"", is_grazing(start.kind) ? no_grazing : why_none, own};
+  if (why_none.empty()) return {{from_label({"ISW=2"}, to_curve)}, "", own};
+  return {{}, is_grazing(start.kind) ? no_grazing : why_none, own};
 }
 
 std::vector<CurveCommand> born_curve_commands(const NextStart& start, const RunSettings& settings,
@@ -387,21 +405,19 @@ std::vector<CurveCommand> born_curve_commands(const NextStart& start, const RunS
   const ProblemType* const type = birth_type(start.type, settings.problem_type, true);
   const bool begins = type != nullptr && type->facts().curve > 0;  // at a BP, a curve of the same kind crosses
   if (!problem_type(settings).facts().in_two_parameters || !begins) return {};
-  const std::string from_label =
-      fmt::format("tchat run {} -c {} -s {} IRS={}", problem_arguments(problem),
-                  quoted_for_shell(output_path('r', output)), quoted_for_shell(output), start.label);
-  const std::string run = from_label + birth_words(start.type, settings.problem_type, true, "");
+  const Command from_label = run_from_label(start, problem, output);
+  const Command run = words_of({from_label, birth_words(start.type, settings.problem_type, true, "")});
   const std::string kind = type_name(type->facts().curve);
   const bool is_alone =
       start.type != static_cast<int>(PointType::resonance_2);  // there that of the shorter orbits ends
   if (start.type != static_cast<int>(PointType::double_hopf))
-    return {{fmt::format("{} -o {}", run, quoted_for_shell(curve)), "", kind, "", is_alone}};
+    return {{{words_of({run, {"-o", curve}})}, "", kind, is_alone}};
   std::vector<CurveCommand> all;
   for (const std::string mode : {"1", "2"}) {
-    const std::string rest = "_hopf" + mode;
-    all.push_back({fmt::format("{} MODE={} -o {}", run, mode, quoted_for_shell(curve + mode)), "", kind, mode});
-    all.push_back({fmt::format("{} ISW=2 MODE={} -o {}", from_label, mode, quoted_for_shell(curve + rest)), "",
-                   type_name(static_cast<int>(PointType::hopf)), rest, false, true});
+    const Command which{"MODE=" + mode, "-o", curve};
+    all.push_back({{words_of({run, which})}, "", kind});
+    all.push_back(
+        {{words_of({from_label, {"ISW=2"}, which})}, "", type_name(static_cast<int>(PointType::hopf)), false, true});
   }
   return all;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/command.hpp"
 #include "model/hybrid_system.hpp"
 #include "orbit/orbit.hpp"
 #include "run/orbit_start.hpp"
@@ -44,25 +45,33 @@ struct NextStart {
   int curve = 0;  ///< curve_type() of its number in files; 0: of no curve in two parameters
 };
 
-/// A line for the shell: at a bifurcation a run on the branch that is born there, at a fold the curve of folds in two
-/// parameters, at an extremum that of extrema, at a contact or an impact of velocity zero resegmentation and a run with
-/// the new signature. On curves in two parameters, the one that begins at the label or crosses there. "" where no
-/// command suits most users. `settings` are those of the run that wrote the label to q.`output`; `problem` is the name
-/// or path of its problem.
-std::string next_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
-                         const std::string& problem, const std::string& output);
+/// The names of the files that a command at a label makes.
+struct NextNames {
+  std::string branch;              ///< of the run
+  std::string start;               ///< of what `tchat resegment` makes first, where it does
+  std::string branch_after_start;  ///< of the run then
+};
+/// "O_PD3", or "O_GR3" and "O_GR3_branch".
+NextNames names_at(const NextStart& start, const std::string& output);
+
+/// At a bifurcation a run on the branch that is born there, at a fold the curve of folds in two parameters, at an
+/// extremum that of extrema, at a contact or an impact of velocity zero resegmentation and a run with the new
+/// signature; on curves in two parameters, the one that begins at the label or crosses there. None where no command
+/// suits most users. `settings` are those of the run that wrote the label to q.`output`; `problem` is the name or path
+/// of its problem.
+Commands next_commands(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
+                       const std::string& problem, const std::string& output, const NextNames& names);
 
 /// Is the kind that of a section which the orbit touches, and no contact that changes the motion?
 bool tangent_section(const UserPointKind& kind, const RunSettings& settings, const HybridSystem& system);
 
 /// How the points of a label are followed in two parameters.
 struct CurveCommand {
-  std::string line;      ///< commands, joined by " && ", the last of which is a run that lacks ICP; "": there are none
-  std::string why_none;  ///< why not, in words
-  std::string kind;      ///< name of the points that the curve consists of
-  std::string suffix = {};  ///< behind the name of its files, where several begin
-  bool is_alone = false;    ///< the only curve of its kind that may end at the label
-  bool rests = false;       ///< it consists of equilibria
+  Commands commands;      ///< the last is a run that lacks ICP
+  std::string why_none;   ///< why not, in words
+  std::string kind;       ///< name of the points that the curve consists of
+  bool is_alone = false;  ///< the only curve of its kind that may end at the label
+  bool rests = false;     ///< it consists of equilibria
 };
 
 /// To files of the name `curve`. A grazing contact is cut first (tchat resegment); one that changes nothing, in
@@ -71,8 +80,8 @@ struct CurveCommand {
 CurveCommand curve_command(const NextStart& start, const RunSettings& settings, const HybridSystem& system,
                            const std::string& problem, const std::string& output, const std::string& curve);
 
-/// The curves in two parameters that begin at a label of a curve, to files of the name `curve` with their suffix, and
-/// both Hopf curves through HH. Empty where none begins.
+/// The curves in two parameters that begin at a label of a curve, and both Hopf curves through HH, each to files of the
+/// name `curve`. Empty where none begins.
 std::vector<CurveCommand> born_curve_commands(const NextStart& start, const RunSettings& settings,
                                               const std::string& problem, const std::string& output,
                                               const std::string& curve);

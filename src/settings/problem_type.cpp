@@ -127,13 +127,14 @@ const ProblemType* birth_type(int label_type, int number, bool in_two_parameters
   return found == all.end() ? nullptr : *found;
 }
 
-std::string birth_words(int label_type, int number, bool in_two_parameters, const std::string& principal) {
+Command birth_words(int label_type, int number, bool in_two_parameters, const std::string& principal) {
   const ProblemType* const type = birth_type(label_type, number, in_two_parameters);
-  if (type == nullptr) return "";
+  if (type == nullptr) return {};
   const ProblemFacts& facts = type->facts();
-  std::string words = facts.number == number ? "" : fmt::format(" IPS={}", facts.number);
-  words += fmt::format(" ISW={}", facts.branch_mode);
-  if (*facts.start_words != '\0') words += " " + fmt::format(fmt::runtime(facts.start_words), principal);
+  Command words;
+  if (facts.number != number) words.push_back(fmt::format("IPS={}", facts.number));
+  words.push_back(fmt::format("ISW={}", facts.branch_mode));
+  if (*facts.start_word != '\0') words.push_back(fmt::format(fmt::runtime(facts.start_word), principal));
   return words;
 }
 

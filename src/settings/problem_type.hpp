@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "base/command.hpp"
+
 namespace tchat {
 
 // The numbers of problem types (IPS, ISW) whose constants other rooms make.
@@ -185,8 +187,8 @@ struct ProblemFacts {
   const char* starts_at = "a branch point (BP)";  ///< the labels at which such a switch starts
   const char* start_example = "BP";               ///< of types whose curve has no number, too
   int starts_from = 0;                            ///< IPS of those labels; 0: its own
-  /// Further words of a command line that starts there, after IRS, IPS and ISW; {} stands for the name of ICP(1).
-  const char* start_words = "";
+  /// A further word of a command that starts there, after IRS, IPS and ISW; {} stands for the name of ICP(1).
+  const char* start_word = "";
 };
 
 class ProblemType {
@@ -258,9 +260,9 @@ bool has_two_parameter_curves(int number);
 /// What is born at a label; null where nothing is. `label_type`: its number without the tens digit of a curve;
 /// `number`: IPS of the label's branch; `in_two_parameters`: it is a curve.
 const ProblemType* birth_type(int label_type, int number, bool in_two_parameters);
-/// Words of `tchat run` that follow it, after IRS: " IPS=182 ISW=-1 'ICP=[a,rho]'"; "" where nothing is born.
-/// `principal`: the name of ICP(1).
-std::string birth_words(int label_type, int number, bool in_two_parameters, const std::string& principal);
+/// Words of `tchat run` that follow it: IPS=182, ISW=-1, ICP=[a,rho]; none where nothing is born. `principal`: the name
+/// of ICP(1).
+Command birth_words(int label_type, int number, bool in_two_parameters, const std::string& principal);
 /// AUTO's own boundary value problems have no multipliers.
 bool has_multipliers(int number);
 /// One multiplier is critical all along, so that stability is none.

@@ -523,7 +523,7 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
   }
   say(written_text(output, files));
   if (result.last.ended_by == SegmentEnd::failed) {
-    warnings << "tchat: " << result.last.message << '\n';
+    print_failure(warnings, result.last.message);
     return 1;
   }
   if (!request.hand_over) return 0;

@@ -16,17 +16,27 @@ namespace {
 
 constexpr double zeta = 0.05, restitution = 0.8;
 
-/// The name of the first curve of a kind from a label whose branch has all of `from` in its name.
+/// The name of the first curve of a kind whose origin ends with, or is, one of `from`, as "PD 3 of b2" or " of b2".
 std::string curve_from(const std::string& tree, const std::string& kind, const std::vector<std::string>& from) {
-  const std::string word = "  " + kind + " curve from ";
+  const std::string word = "  " + kind + " curve ";
   for (std::size_t at = tree.find(word); at != std::string::npos; at = tree.find(word, at + 1)) {
     const std::size_t line = tree.rfind('\n', at) + 1;
     const std::string origin = tree.substr(at, tree.find(':', at) - at);
-    const auto has = [&](const std::string& part) { return origin.find(part) != std::string::npos; };
-    if (std::all_of(from.begin(), from.end(), has)) return tree.substr(line, at - line);
+    if (std::any_of(from.begin(), from.end(), [&](const std::string& end) { return origin.ends_with(end); }))
+      return tree.substr(line, at - line);
   }
   FAIL("no " << kind << " curve from " << from.back() << " in\n" << tree);
   return "";
+}
+
+/// " of b7" for each branch whose line has this text.
+std::vector<std::string> labels_of(const std::string& tree, const std::string& text) {
+  std::vector<std::string> names;
+  for (std::size_t at = tree.find(text); at != std::string::npos; at = tree.find(text, at + 1)) {
+    const std::size_t line = tree.find_first_not_of(' ', tree.rfind('\n', at) + 1);
+    names.push_back(" of " + tree.substr(line, tree.find(' ', line) - line));
+  }
+  return names;
 }
 
 /// The tree that `tchat explore` writes to OUTPUT.txt.
@@ -95,15 +105,16 @@ TEST_CASE("the impact oscillator: folds and doublings of three periods come from
   INFO(tree);
   const auto points = [&](const std::string& name) { return inner_points(workspace.file("osc/p." + name), "omega"); };
 
-  for (const Place& point : points(curve_from(tree, "GR", {" of a1"})))
+  for (const Place& point : points(curve_from(tree, "GR", {" of b1"})))
     CHECK(point.first ==
           Approx(std::hypot(1.0 - point.second * point.second, 2.0 * zeta * point.second)).epsilon(1e-8));
   // Where xi_k = 0 and xi_n > 0 for n < k: the free oscillator makes half a turn in k periods.
   for (int k = 1; k <= 3; ++k) {
-    const std::vector<std::string> family{"_XI", "_in" + std::to_string(k) + "_"};
+    const std::vector<std::string> family =
+        labels_of(tree, "  one impact in " + std::to_string(k) + " return" + (k > 1 ? "s" : "") + ", at omega");
     INFO("one impact in " << k << " periods");
     const std::string folds = curve_from(tree, "LP", family);
-    const std::string doublings = k == 1 ? "a2_PD3_curve" : curve_from(tree, "PD", family);
+    const std::string doublings = curve_from(tree, "PD", k == 1 ? std::vector<std::string>{"PD 3 of b2"} : family);
     for (const Place& point : points(folds)) CHECK(point.first == Approx(fold(point.second, k)).epsilon(1e-8));
     for (const Place& point : points(doublings)) CHECK(point.first == Approx(doubling(point.second, k)).epsilon(1e-8));
     const double omega = 2.0 * k * std::sqrt(1.0 - zeta * zeta);
@@ -111,7 +122,7 @@ TEST_CASE("the impact oscillator: folds and doublings of three periods come from
     const std::size_t at = tree.find(joint, tree.find("Codimension two"));
     REQUIRE(at != std::string::npos);
     const std::string members = tree.substr(at, tree.find('\n', at) - at);
-    for (const std::string& name : {folds, doublings, std::string("a1_GR2_curve")})
+    for (const std::string& name : {folds, doublings, curve_from(tree, "GR", {" of b1"})})
       CHECK(members.find(name) != std::string::npos);
   }
 
@@ -120,7 +131,7 @@ TEST_CASE("the impact oscillator: folds and doublings of three periods come from
         workspace.tchat("explore linosc --over alpha=1:40:41 --and omega=1.4:6.5 PAR(omega)=2.0072 -o osc -q").status ==
         0);
     CHECK(workspace.read("osc.txt") == tree);
-    const std::string file = "osc/p." + curve_from(tree, "PD", {"_in3_"});
+    const std::string file = "osc/p." + curve_from(tree, "PD", labels_of(tree, "  one impact in 3 returns, at omega"));
     const std::string before = workspace.read(file);
     REQUIRE(workspace.shell("mkdir made && cp linosc.so Makefile.osc made").status == 0);
     const Outcome made = workspace.make("made", "-s -f Makefile.osc " + file);
@@ -139,9 +150,10 @@ TEST_CASE("the bouncing ball in two parameters: each curve once, whichever branc
   const std::string tree = workspace.read("b.txt");
   INFO(tree);
   const auto birth = [](double r) { return M_PI * (1.0 - r) / (1.0 + r); };
-  for (const Place& point : inner_points(workspace.file("b/p.a1_LP4_curve"), "r"))
+  for (const Place& point : inner_points(workspace.file("b/p." + curve_from(tree, "LP", {"LP 4 of b1"})), "r"))
     CHECK(point.first == Approx(birth(point.second)).epsilon(1e-8));
-  for (const Place& point : inner_points(workspace.file("b/p.a1_PD2_curve"), "r")) {
+  const std::string doublings = curve_from(tree, "PD", {"PD 2 of b1"});
+  for (const Place& point : inner_points(workspace.file("b/p." + doublings), "r")) {
     const double r = point.second;
     const double slope = 2.0 * (1.0 + r * r) / ((1.0 + r) * (1.0 + r));
     CHECK(point.first == Approx(std::hypot(birth(r), slope)).epsilon(1e-8));
@@ -149,7 +161,7 @@ TEST_CASE("the bouncing ball in two parameters: each curve once, whichever branc
   CHECK(tree.find("the edge r = 0.6") != std::string::npos);
   CHECK(tree.find("the edge Gamma = 1.7") != std::string::npos);
   // The doubled orbits have BP where the others have PD.
-  CHECK(tree.find("-> a1, curve a1_PD2_curve") != std::string::npos);
+  CHECK(tree.find("-> b1, curve " + doublings) != std::string::npos);
   CHECK(tree.find("BP curve") == std::string::npos);
 }
 
@@ -161,7 +173,9 @@ TEST_CASE("one impact in two returns: a period doubling is passed twice within a
   REQUIRE(outcome.status == 0);
   const std::string tree = workspace.read("osc.txt");
   INFO(tree);
-  const std::size_t at = tree.find("a1_GR2_in2_GR3_branch  ");
+  const std::vector<std::string> twice = labels_of(tree, "one impact in 2 returns, GR 2 of b1");
+  REQUIRE(twice.size() == 1);
+  const std::size_t at = tree.find("GR 3" + twice.front());
   REQUIRE(at != std::string::npos);
   const auto value = [&](const std::string& label) {
     return std::stod(tree.substr(tree.find(label, at) + label.size()));
@@ -176,7 +190,7 @@ namespace {
 /// How many curves of a kind a tree has.
 std::size_t count_of(const std::string& tree, const std::string& kind) {
   std::size_t count = 0;
-  const std::string word = "  " + kind + " curve from ";
+  const std::string word = "  " + kind + " curve ";
   for (std::size_t at = tree.find(word); at != std::string::npos; at = tree.find(word, at + 1)) ++count;
   return count;
 }
@@ -247,8 +261,9 @@ TEST_CASE("predators and prey: Hopf, boundary and grazing curve end or cross whe
   const std::string tree = workspace.read("food.txt");
   INFO(tree);
   for (const char* const kind : {"HB", "BE", "GR"}) CHECK(count_of(tree, kind) == 1);
-  const std::string hopf = curve_from(tree, "HB", {"of a"}), boundary = curve_from(tree, "BE", {"of a"});
-  const std::string grazing = curve_from(tree, "GR", {"of a"});
+  const std::string hopf = curve_from(tree, "HB", {" of b1", " of b2"}),
+                    boundary = curve_from(tree, "BE", {" of b1", " of b2"});
+  const std::string grazing = curve_from(tree, "GR", {" of b1", " of b2", " of b3", " of b4", " of b5"});
   // The prey's isocline has its maximum at the Hopf bifurcation.
   for (const Place& point : inner_points(workspace.file("food/p." + hopf), "d"))
     CHECK(point.first == Approx((1.0 + point.second) / (1.0 - point.second)).epsilon(1e-8));
@@ -256,7 +271,7 @@ TEST_CASE("predators and prey: Hopf, boundary and grazing curve end or cross whe
   const double d = std::sqrt(1.0 - 1.0 / predators_on_surface);  // both
   check_meeting(tree, {(1.0 + d) / (1.0 - d), d}, {{hopf, "BE"}, {boundary, "HB"}, {grazing, "HB"}}, 1e-6);
   CHECK(tree.find("HB 4 at 3, curve " + hopf) != std::string::npos);  // where the cycles shrink
-  CHECK(tree.find("Without a curve: BP 2 of a1, BP 5 of a2: the branches that cross at a BP of equilibria part when a "
+  CHECK(tree.find("Without a curve: BP 2 of b1, BP 5 of b2: the branches that cross at a BP of equilibria part when a "
                   "second parameter changes, unless a symmetry or an invariant set keeps the BP") != std::string::npos);
   // Here the BP persists, as prey alone is an invariant set: at another d, K = d / (1 - d).
   REQUIRE(workspace.tchat("explore predator --over K=0.5:2:16 PAR(d)=0.6 --state 0.5,0.3 -o other -q").status == 0);
@@ -273,7 +288,7 @@ TEST_CASE("predators and prey: a boundary curve from where the Hopf curve reache
   const std::string tree = workspace.read("food.txt");
   INFO(tree);
   CHECK(count_of(tree, "BE") == 1);
-  const std::string boundary = curve_from(tree, "BE", {"BE", "_HB", "_curve"});
+  const std::string boundary = curve_from(tree, "BE", {" of c1", " of c2", " of c3"});
   check_boundary(workspace.file("food/p." + boundary));
   // ISW = 2 from a label of the curve goes on along it.
   const std::string files = "food/r." + boundary + " -s food/" + boundary;
@@ -293,8 +308,9 @@ TEST_CASE("equilibria and cycles: cusp, zero-Hopf, generalised Hopf and boundary
   CHECK(count_of(tree, "LP") == 2);
   CHECK(count_of(tree, "HB") == 1);
   CHECK(count_of(tree, "BE") == 1);
-  const std::string hopf = curve_from(tree, "HB", {"of a2"}), boundary = curve_from(tree, "BE", {"of a2"});
-  const std::string folds = curve_from(tree, "LP", {"of a2"}), cycles = curve_from(tree, "LP", {"of a2_HB"});
+  const std::string hopf = curve_from(tree, "HB", {" of b2"}), boundary = curve_from(tree, "BE", {" of b2"});
+  const std::string folds = curve_from(tree, "LP", {" of b2"}),
+                    cycles = curve_from(tree, "LP", labels_of(tree, ", HB "));
   const auto points = [&](const std::string& name) { return inner_points(workspace.file("c/p." + name), "b2"); };
   const auto at_rest = [](double x, double b2) { return Approx(x * x * x - b2 * x).epsilon(1e-8).margin(1e-8); };
   for (const Place& point : points(hopf)) CHECK(point.first == at_rest(1.0, point.second));
@@ -319,7 +335,7 @@ TEST_CASE("a map: folds of doubled orbits begin at generalised period doubling")
   const std::string tree = explored(workspace, "map --over p=-0.3:0.1:21 --and q=-0.5:0.5", "m");
   INFO(tree);
   CHECK(count_of(tree, "LP") == 1);
-  for (const Place& point : inner_points(workspace.file("m/p." + curve_from(tree, "LP", {"GPD"})), "q")) {
+  for (const Place& point : inner_points(workspace.file("m/p." + curve_from(tree, "LP", {" of c1", " of c2"})), "q")) {
     CHECK(point.first == Approx(-0.25 * point.second * point.second).margin(1e-8));
     CHECK(point.second < 0.0);
   }
@@ -336,10 +352,10 @@ TEST_CASE("a map: torus bifurcations of orbits and of doubled orbits end at a 1:
   INFO(tree);
   CHECK(count_of(tree, "TR") == 2);
   const auto points = [&](const std::string& name) { return inner_points(workspace.file("m/p." + name), "p"); };
-  const std::size_t end = tree.find("_born  TR curve from R2");
+  const std::size_t end = tree.find("  TR curve born at R2");
   REQUIRE(end != std::string::npos);
   const std::size_t begin = tree.rfind('\n', end) + 1;
-  for (const Place& point : points(tree.substr(begin, end - begin) + "_born"))
+  for (const Place& point : points(tree.substr(begin, end - begin)))
     CHECK(point.second == Approx(-point.first / 3.0).margin(1e-8));
 }
 

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
+#include <regex>
 
 #include "end_to_end/workspace.hpp"
 
@@ -107,9 +108,9 @@ TEST_CASE("an impact that loses its velocity is followed to the orbit without it
   REQUIRE(outcome.status == 0);
   const std::string tree = workspace.read("osc.txt");
   INFO(tree);
-  CHECK(tree.find("GR 4 at 3.035495345 -> a1") != std::string::npos);
+  CHECK(tree.find("GR 4 at 3.035495345 -> b1") != std::string::npos);
   // Of the doubled orbit one of two impacts vanishes: one impact in two periods, born at a fold.
-  CHECK(tree.find("-> a2_PD3_GR6_branch\n") != std::string::npos);
+  CHECK(std::regex_search(tree, std::regex("GR 6 at [0-9.]+ -> b[0-9]+\n")));
 }
 
 TEST_CASE("an attractor that only further starts find begins a branch where its first segment ends") {
@@ -119,7 +120,7 @@ TEST_CASE("an attractor that only further starts find begins a branch where its 
       explored(workspace, ROCKING_BLOCK, "rocking_block --over beta=1.045:1.065:5 --segments 6 --starts 8");
   INFO(tree);
   CHECK(tree.find("2 branches.") != std::string::npos);
-  CHECK(tree.find("\nb2_1  1.045 to 1.065") != std::string::npos);
+  CHECK(std::regex_search(tree, std::regex("\nb[0-9]+  1.045 to 1.065, attractor s2 ")));
 }
 
 TEST_CASE("mirror images of equal periods, means and largest values are two branches") {

@@ -1,5 +1,6 @@
 // tchat explore: diagrams whose special points are known in closed form, the same whatever is done at a time or
 // interrupted, and by make alone.
+#include <fmt/format.h>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
@@ -226,7 +227,7 @@ TEST_CASE("where one direction from a branch point is known, the other one alone
                                     "relay --over omega=7.15:7.5:30 PAR(zeta)=0.05 --starts 0 --branches 3 "
                                     "UZR={omega:[7.18,7.25,7.29,7.35,7.45]}");
   INFO(tree);
-  CHECK(std::regex_search(tree, std::regex("-> a2_BP[0-9]+_(for|back)ward\n")));
+  CHECK(std::regex_search(tree, std::regex("BP [0-9]+ of b2 at .*, the other direction is b[0-9]+\n")));
   CHECK(count_different_orbits(workspace) > 12);
 }
 
@@ -238,8 +239,8 @@ TEST_CASE("a branch that is met where it has no label is known by an orbit that 
   REQUIRE(workspace.tchat(command + " -o two -j 2").status == 0);
   const std::string tree = workspace.read("one.txt");
   INFO(tree);
-  CHECK(corrections_of(workspace, "a4_BP3", "a3").size() == 1);
-  CHECK(tree.find("BP 3 at 1.696780746 -> a3") != std::string::npos);
+  CHECK(corrections_of(workspace, "", "b3").size() == 1);
+  CHECK(tree.find("BP 3 at 1.696780746 -> b3") != std::string::npos);
   CHECK(tree.find("6 branches.") != std::string::npos);
   CHECK(workspace.read("two.txt") == tree);
   check_resumed(workspace, command, 10);
@@ -258,7 +259,7 @@ TEST_CASE("the impact oscillator: resegmentation at grazing joins the branches o
   // The amplitude reaches the wall at |1 - omega^2 + 2 i zeta omega|.
   const double omega = 2.0072;
   CHECK(value_of(tree, "GR 2 at ") == Approx(std::hypot(1.0 - omega * omega, 0.1 * omega)).epsilon(1e-8));
-  CHECK(tree.find("GR 2 at 3.035495345 -> a2") != std::string::npos);
+  CHECK(tree.find("GR 2 at 3.035495345 -> b2") != std::string::npos);
   CHECK(value_of(tree, "PD 3 at ") == Approx(3.036193566).epsilon(1e-9));
 }
 
@@ -271,4 +272,87 @@ TEST_CASE("ranges that are none are refused with the form") {
   }
   CHECK(workspace.tchat("explore linosc --over beta=1:2").text().find("is no parameter of problem") !=
         std::string::npos);
+}
+
+namespace {
+
+/// An oscillator against a wall; without impacts its amplitude is alpha / |1 - omega^2 + 2 i zeta omega|.
+std::string oscillator(double zeta) {
+  return fmt::format(
+      "par alpha=2.5, omega=2.0072, zeta={}, r=0.8\ninit y2=1\ngrowth = 1 - y1^2 - y2^2\nx' = v\n"
+      "v' = alpha*y2 - 2*zeta*v - x\ny1' = growth*y1 + omega*y2\ny2' = growth*y2 - omega*y1\n"
+      "event wall = 1 - x\nevent maximum = v\njump impact: v -> -r*v\nafter any: wall -> impact, maximum -> identity\n",
+      zeta);
+}
+
+double grazing(double zeta) {
+  constexpr double omega = 2.0072;
+  return std::hypot(1.0 - omega * omega, 2.0 * zeta * omega);
+}
+
+const std::string short_exploration = "explore osc --over alpha=2.5:3.5:6 --starts 0 --branches 1 -q";
+
+}  // namespace
+
+TEST_CASE("after the model or the constants are edited, the same command computes the diagram of what is there") {
+  const Workspace workspace;
+  const auto found = [&](const std::string& more) {
+    const Outcome outcome = workspace.tchat(short_exploration + " -o d" + more);
+    INFO(outcome.text());
+    REQUIRE(outcome.status == 0);
+    return value_of(workspace.read("d.txt"), "GR 2 at ");
+  };
+  workspace.write("osc.tch", oscillator(0.05));
+  CHECK(found("") == Approx(grazing(0.05)).epsilon(1e-8));
+  REQUIRE(workspace.make(".", "-q -f Makefile.d").status == 0);
+  const std::string points = workspace.read("d/p.b1");
+  workspace.write("osc.tch", oscillator(0.3));
+  CHECK(workspace.make(".", "-q -f Makefile.d").status == 1);  // the model is a prerequisite
+  CHECK(found("") == Approx(grazing(0.3)).epsilon(1e-8));
+  workspace.write("osc.tch", oscillator(0.05));
+  CHECK(found("") == Approx(grazing(0.05)).epsilon(1e-8));
+  CHECK(workspace.read("d/p.b1") == points);
+
+  workspace.write("d/p.b1", "");  // and so are files that something else has written over
+  CHECK(found("") == Approx(grazing(0.05)).epsilon(1e-8));
+  CHECK(workspace.read("d/p.b1") == points);
+
+  for (const char* const degree : {"NCOL = 5", "NCOL = 3"}) {
+    REQUIRE(workspace.shell(fmt::format("sed 's/^NCOL = .*/{}/' d/gc.b1 > gc.mine", degree)).status == 0);
+    found(" -c mine");
+    CHECK(workspace.read("d/gc.b1").find(degree) != std::string::npos);
+  }
+}
+
+TEST_CASE("one exploration at a time writes in a folder, and the other one says so") {
+  const Workspace workspace;
+  workspace.write("osc.tch", oscillator(0.05));
+  REQUIRE(workspace.tchat("check osc").status == 0);  // compiled
+  const std::unique_ptr<Process> first = workspace.start_tchat("explore osc --over alpha=2.5:3.5:201 -o d -q");
+  while (!workspace.has("d/.sweep.log") && !first->ended()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  const Outcome second = workspace.tchat("explore osc --over alpha=2.5:3.5:201 -o d -q");
+  CHECK(second.status == 2);
+  CHECK(second.err.find("d: another tchat (process ") != std::string::npos);
+}
+
+TEST_CASE("folders that a Makefile cannot name, or that cannot be written, are refused before any work") {
+  const Workspace workspace;
+  workspace.write("osc.tch", oscillator(0.05));
+  const auto refusal = [&](const std::string& folder) {
+    const Outcome outcome = workspace.tchat({"explore", "osc", "--over", "alpha=2.5:3.5:6", "-o", folder});
+    CHECK(outcome.status == 2);
+    CHECK(outcome.err.find("internal") == std::string::npos);
+    return outcome.err;
+  };
+  for (const char* const folder : {"a b", "a:b", "a=b", "a;b", "a'b", "a\"b", "a$b", "a#b", "a%b", "a*b"}) {
+    INFO(folder);
+    CHECK(refusal(folder).find("a Makefile cannot name files in a folder with") != std::string::npos);
+  }
+  CHECK(refusal("").find("a folder with a name of its own") != std::string::npos);
+  CHECK(refusal("osc.tch").find("this is a file") != std::string::npos);
+  CHECK(refusal("osc.tch/d").find("the folder cannot be made") != std::string::npos);
+  workspace.write("d.png", "of the user");
+  REQUIRE(workspace.tchat(short_exploration + " -o ./d/").status == 0);
+  CHECK(workspace.read("d.png~") == "of the user");
+  CHECK(workspace.read("d.png") != "of the user");
 }

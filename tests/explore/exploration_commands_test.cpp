@@ -1,27 +1,40 @@
-// The commands of an exploration as a user would type them.
+// The commands of an exploration as data and as a user would type them.
 #include "explore/exploration_commands.hpp"
 
 #include <catch2/catch.hpp>
 
+#include "support/temporary_folder.hpp"
 #include "support/van_der_pol.hpp"
 
 using namespace tchat;
 
 TEST_CASE("one direction of a switch that goes in both") {
+  const test_support::TemporaryFolder place;
   ExploreRequest request;
   request.name = "osc";
   request.over = "1=0:1";
-  request.output = "my osc";
+  request.output = place.file("osc");
   request.overrides = {"DS=0.01", "NMX=7"};
-  const ExplorationCommands commands(request, test::system_of<test::VanDerPol>(), false);
-  const CommandJob both = commands.switching({"a1", 4, "BP", 0.5, "tchat run osc -s 'my osc/a1' -o 'my osc/a1_BP4'"});
+  const std::string folder = *request.output;
+  const ExplorationCommands commands(request, test::system_of<test::VanDerPol>(), false, {{"osc.tch"}, {}});
+  const Command run{"run", "osc", "-s", folder + "/b1", "-o", folder + "/b4"};
+  const CommandJob both = commands.switching("b4", {"b1", 4, "BP", {run}});
   REQUIRE(ExplorationCommands::goes_in_both_directions(both));
-  const CommandJob forward = commands.one_direction(both, std::nullopt);
-  CHECK(forward.name == "a1_BP4_forward");
-  CHECK(forward.lines.back() == "tchat run osc -s 'my osc/a1' -o 'my osc/a1_BP4_forward' --clip DS=0.01 NMX=7");
-  CHECK(forward.outputs.front() == "my osc/p.a1_BP4_forward");
-  const CommandJob backward = commands.one_direction(both, -0.01);
-  CHECK(backward.lines.back() == "tchat run osc -s 'my osc/a1' -o 'my osc/a1_BP4_backward' --clip NMX=7 DS=-0.01");
+  const CommandJob forward = commands.one_direction("b5", both, std::nullopt);
+  CHECK(forward.name == "b5");
+  CHECK(shell_line(forward.commands) == "tchat run osc -s " + folder + "/b1 -o " + folder + "/b5 --clip DS=0.01 NMX=7");
+  CHECK(forward.outputs.front() == folder + "/p.b5");
+  CHECK(forward.given == std::vector<std::string>{"osc.tch"});
+  const CommandJob backward = commands.one_direction("b6", both, -0.01);
+  CHECK(shell_line(backward.commands) ==
+        "tchat run osc -s " + folder + "/b1 -o " + folder + "/b6 --clip NMX=7 DS=-0.01");
   CHECK(backward.inputs == both.inputs);
   CHECK_FALSE(ExplorationCommands::goes_in_both_directions(backward));
+}
+
+TEST_CASE("a word that the shell would split or expand is one word") {
+  CHECK(shell_line(Command{"run", "my ball", "UZR={r:[1,2]}", "it's"}) ==
+        "tchat run 'my ball' 'UZR={r:[1,2]}' 'it'\\''s'");
+  CHECK(shell_line(Commands{}) == "");
+  CHECK(shell_line(Commands{{"a"}, {"b"}}) == "tchat a && tchat b");
 }

@@ -200,15 +200,15 @@ class Explored(unittest.TestCase):
     def test_diagram(self):
         oscillator, omega = tchat.Problem(PLUGIN, name="linosc", folder="explored"), 2.0072
         diagram = oscillator.explore(over={"alpha": (2, 2.9, 10)}, y="max(x1)", omega=omega)
-        self.assertEqual([one.name for one in diagram], ["a1"])
+        self.assertEqual([one.name for one in diagram], ["b1"])
         self.assertEqual((diagram.parameter, diagram.quantity, diagram.coverage, diagram.complete),
                          ("alpha", "max(x1)", 1.0, True))
-        branch, sweep = diagram["a1"].branch, diagram.sweep
+        branch, sweep = diagram["b1"].branch, diagram.sweep
         for found in (branch, sweep):
             amplitude = found["alpha"] / np.hypot(1 - omega ** 2, 0.1 * omega)
             np.testing.assert_allclose(found["max(x1)"], amplitude, rtol=1e-7)
             np.testing.assert_allclose(found["max(x2)"], omega * amplitude, rtol=1e-7)
-        self.assertEqual((diagram["a1"].parent, diagram["a1"].children), (None, []))
+        self.assertEqual((diagram["b1"].parent, diagram["b1"].children), (None, []))
         self.assertEqual(branch.problem, oscillator)
         self.assertIn("1 branches. Coverage: 40 of 40", diagram.text)
         self.assertEqual(tchat.Diagram("explored/diagram1").text, diagram.text)
@@ -218,11 +218,11 @@ class Explored(unittest.TestCase):
         chemistry = tchat.Problem("par A=1, B=1.5\ninit x=1.2, y=1\nx' = A - (B + 1)*x + x^2*y\ny' = B*x - x^2*y\n")
         diagram = chemistry.explore(over={"B": (1.5, 2.5, 11)}, and_={"A": (0.8, 1.1)})
         curve, = diagram.curves
-        self.assertEqual((diagram.second, curve.kind, curve.name), ("A", "HB", "a1_HB2_curve"))
-        self.assertEqual((curve.parent, diagram[curve.name]), (diagram["a1"], curve))
+        self.assertEqual((diagram.second, curve.kind, curve.name), ("A", "HB", "c1"))
+        self.assertEqual((curve.parent, diagram[curve.name]), (diagram["b1"], curve))
         np.testing.assert_allclose(curve.branch["B"], 1 + curve.branch["A"] ** 2, rtol=1e-8)
         self.assertEqual(sorted(end["reason"] for end in curve.ends), ["the edge A = 0.8", "the edge A = 1.1"])
-        self.assertIn(curve.name, [label["curve"] for label in diagram["a1"].labels])
+        self.assertIn(curve.name, [label["curve"] for label in diagram["b1"].labels])
         self.assertEqual((diagram.slices, diagram.codimension_two), ([], []))
 
     def test_what_is_none_is_refused(self):

@@ -7,7 +7,9 @@
 using namespace tchat;
 
 TEST_CASE("what is born at a label, by its type and the branch that it is on") {
-  const auto words = [](PointType type, int number) { return birth_words(static_cast<int>(type), number, false, "a"); };
+  const auto words = [](PointType type, int number) {
+    return shell_words(birth_words(static_cast<int>(type), number, false, "a"));
+  };
   CHECK(words(PointType::period_doubling, 180) == " ISW=-1");
   CHECK(words(PointType::branch_point, 180) == " ISW=-1");
   CHECK(words(PointType::equilibrium_branch_point, 1) == " ISW=-1");
@@ -21,7 +23,9 @@ TEST_CASE("what is born at a label, by its type and the branch that it is on") {
 }
 
 TEST_CASE("what begins at a label of a curve in two parameters") {
-  const auto words = [](PointType type, int number) { return birth_words(static_cast<int>(type), number, true, "a"); };
+  const auto words = [](PointType type, int number) {
+    return shell_words(birth_words(static_cast<int>(type), number, true, "a"));
+  };
   CHECK(words(PointType::generalized_doubling, 180) == " ISW=-1");
   CHECK(words(PointType::resonance_2, 180) == " ISW=-1");
   CHECK(words(PointType::generalized_hopf, 1) == " IPS=180 ISW=-1");

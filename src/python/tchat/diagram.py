@@ -33,18 +33,19 @@ class _Explored:
 class ExploredBranch(_Explored):
     """A branch of a diagram.
 
-    name, origin          of its files, and in words what it begins at: "PD 3 of a2 at alpha = 3.03619"
+    name, origin          of its files, and in words what it begins at: "PD 3 of b2 at alpha = 3.03619"
     parent, children      branches of the diagram; parent is None for that of an attractor
     range, signatures     of the parameter, and of its orbits
     labels                a dictionary for each special point: label, type, parameter, leads_to and curve (names or ""),
                           remark
+    ends                  a dictionary for each direction in which it ends: reason (a word: "bound", "points", ...), text
     commands              those of tchat that make it, in the folder of the problem
     branch                its points, orbits and labels: a Branch
     """
 
     def __init__(self, diagram, found):
         super().__init__(diagram, found)
-        self.range = found["from"], found["to"]
+        self.range, self.ends = (found["from"], found["to"]), found["ends"]
 
     @property
     def children(self):
@@ -57,7 +58,7 @@ class ExploredBranch(_Explored):
 class ExploredCurve(_Explored):
     """A curve of special points in two parameters. name, signatures, commands and branch as those of a branch.
 
-    kind, origin          "PD", and the label that it begins at: "PD 3 of a2"
+    kind, origin          "PD", and the label that it begins at: "PD 3 of b2"
     parent                the branch or curve of that label
     ranges                of both parameters
     labels                a dictionary for each special point: label, type, first and second (the parameters), detail,
@@ -75,7 +76,7 @@ class ExploredCurve(_Explored):
 
 
 class Diagram:
-    """The branches that `tchat explore` has found: diagram.branches, or diagram["a1"] by name.
+    """The branches that `tchat explore` has found: diagram.branches, or diagram["b1"] by name.
 
     parameter, quantity   along the axes of its picture
     coverage              the share of the sweep's periodic attractors and equilibria that lie on a branch; None without any
@@ -85,7 +86,7 @@ class Diagram:
     complete              False if an interruption has left something
     sweep                 its Sweep
     second                the other parameter of its curves; None without and_
-    curves                those of special points in two parameters, by name like branches: diagram["a2_PD3_curve"]
+    curves                those of special points in two parameters, by name like branches: diagram["c1"]
     slices                branches over the parameter that begin beside points of grazing curves
     codimension_two       a dictionary for each point that several curves have in common: first, second, curves
     without_curve         a dictionary for each reason why labels have no curve: labels, reason
