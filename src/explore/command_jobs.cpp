@@ -75,9 +75,7 @@ struct JobRunner::Process {
   std::string work;  ///< of its stamp, as it was when the job began
 };
 
-bool JobRunner::has_made(const CommandJob& job) const {
-  return text_of(path(job, ".done")).ends_with(made_text(job));
-}
+bool JobRunner::has_made(const CommandJob& job) const { return text_of(path(job, ".done")).ends_with(made_text(job)); }
 
 bool JobRunner::is_done(const CommandJob& job) const {
   const std::string stamp = text_of(path(job, ".done"));

@@ -76,6 +76,20 @@ RecordedNames recorded_names(const std::string& solution_path) {
   return recorded;
 }
 
+void require_recorded_parameters(const std::string& solution_path, const HybridSystem& system) {
+  const std::vector<std::string> recorded = recorded_names(solution_path).names.parameters;
+  for (int k = 1; k <= std::min(system.parameters(), static_cast<int>(recorded.size())); ++k) {
+    const std::string unnamed = fmt::format("PAR({})", k), was = recorded[static_cast<std::size_t>(k - 1)];
+    const std::string is = system.parameter_name(k);
+    if (was == is || was == unnamed || is == unnamed) continue;
+    throw UserError(fmt::format(
+        "{}: PAR({}) was {} when the file was written, and is {} in problem {} now; its labels and its constants have "
+        "parameters by their numbers. Put new parameters behind the others and keep the names of those there are, or "
+        "compute the branch again",
+        solution_path, k, was, is, system.name()));
+  }
+}
+
 namespace {
 
 constexpr std::string_view violation_begin = "Inadmissible: ";

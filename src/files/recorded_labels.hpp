@@ -8,6 +8,7 @@
 
 #include "files/point_file.hpp"
 #include "files/solution_file_reader.hpp"
+#include "model/hybrid_system.hpp"
 #include "settings/point_type.hpp"
 
 namespace tchat {
@@ -29,6 +30,10 @@ struct RecordedNames {
 
 /// From the header of the p-file beside the q-file: q-files have no names.
 RecordedNames recorded_names(const std::string& solution_path);
+
+/// A q-file and its constants have parameters by their numbers. Throws UserError where a parameter of this number had
+/// another name when the file was written: it is another parameter now.
+void require_recorded_parameters(const std::string& solution_path, const HybridSystem& system);
 
 // What the run that wrote a q-file has said of its labels, from the p-file and the d-file beside it.
 

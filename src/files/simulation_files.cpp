@@ -18,13 +18,18 @@ constexpr int column = 24;  // 16 significant digits
 constexpr std::size_t segments_in_any_case = 32;
 
 /// Headings without blanks inside, so that they stay one word for each column.
-std::string names(const HybridSystem& system, const char* ending) {
-  std::string text;
+std::vector<std::string> names(const HybridSystem& system, const char* ending) {
+  std::vector<std::string> list;
   for (int k = 1; k <= system.dimension(); ++k) {
-    std::string name = system.state_name(k) + ending;
-    std::replace(name.begin(), name.end(), ' ', '_');
-    text += fmt::format(" {:>{}}", name, column);
+    list.push_back(system.state_name(k) + ending);
+    std::replace(list.back().begin(), list.back().end(), ' ', '_');
   }
+  return list;
+}
+
+std::string in_columns(const std::vector<std::string>& headings) {
+  std::string text;
+  for (const std::string& one : headings) text += fmt::format(" {:>{}}", one, column);
   return text;
 }
 
@@ -75,9 +80,17 @@ SimulationFiles::SimulationFiles(const HybridSystem& system, const std::string& 
       trajectory_(trajectory_path(name)),
       events_(events_path(name)),
       most_bytes_(trajectory_bytes) {
-  trajectory_.write(fmt::format("# {}\n#segment  i   j   k {:>{}}{}\n", heading, "t", column, names(system, "")));
-  events_.write(fmt::format("# {}\n#segment  i   j   k {:>{}} {:>{}} {:>{}}{}{} what\n", heading, "t", column, "h",
-                            column, "h_x_f", column, names(system, ""), names(system, "_after")));
+  const std::vector<std::string> before = names(system, "");
+  std::vector<std::string> all = before;
+  for (const std::string& after : names(system, "_after")) all.push_back(after);
+  const auto head = [&](const std::vector<std::string>& given) {
+    std::string text = fmt::format("# {}\n#segment", heading);
+    for (const char* const index : {"i", "j", "k"}) text += fmt::format(" {:>3}", own_heading(index, given));
+    return text;
+  };
+  trajectory_.write(head(before) + in_columns({own_heading("t", before)}) + in_columns(before) + "\n");
+  events_.write(head(all) + in_columns({own_heading("t", all), own_heading("h", all), own_heading("h_x_f", all)}) +
+                in_columns(all) + " what\n");
 }
 
 void SimulationFiles::write(const SimulatedSegment& segment) {

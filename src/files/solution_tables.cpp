@@ -209,12 +209,13 @@ std::string heading(const LabelledSolution& solution, const std::string& name, c
                   type.empty() ? "" : " (" + type + ")", sizes.segments, sizes.segments == 1 ? "" : "s", period);
   for (const int k : known_parameters(solution, names))
     text += fmt::format("# {} = {:.10g}\n", names.parameter(k), stored_parameter(solution, k));
-  text += fmt::format("#{:>3}{:>19}{:>19}", "seg", "tau", "t");
+  std::vector<std::string> states;
   for (int k = 1; k <= sizes.dimension; ++k) {
-    std::string column = names.state(k);
-    std::replace(column.begin(), column.end(), ' ', '_');  // a blank would make two columns of it
-    text += fmt::format(" {:>18}", column);
+    states.push_back(names.state(k));
+    std::replace(states.back().begin(), states.back().end(), ' ', '_');  // a blank would make two columns of it
   }
+  text += fmt::format("#{:>3}{:>19}{:>19}", "seg", own_heading("tau", states), own_heading("t", states));
+  for (const std::string& state : states) text += fmt::format(" {:>18}", state);
   return text + '\n';
 }
 
@@ -279,9 +280,12 @@ std::string format_orbit_table(const LabelledSolution& solution, const std::stri
 std::string format_orbit_csv(const LabelledSolution& solution, const std::string& name, const ProblemNames& names,
                              int dimension) {
   const OrbitSizes sizes = sizes_of(solution, name, dimension > 0 ? dimension : solution.dimension);
-  std::vector<std::string> fields{"segment", "tau", "t"};
+  std::vector<std::string> fields;
   for (int k = 1; k <= sizes.dimension; ++k) fields.push_back(names.state(k));
   fields = distinct_headings(fields);
+  const std::vector<std::string> own{own_heading("segment", fields), own_heading("tau", fields),
+                                     own_heading("t", fields)};
+  fields.insert(fields.begin(), own.begin(), own.end());
   for (std::string& field : fields) field = csv_field(field);
   std::string text = csv_line(fields);
   for_each_point(solution, sizes, [&](const OrbitPoint& point) {

@@ -72,6 +72,11 @@ std::vector<std::string> distinct_headings(const std::vector<std::string>& headi
   return distinct;
 }
 
+std::string own_heading(std::string name, const std::vector<std::string>& given) {
+  while (std::find(given.begin(), given.end(), name) != given.end()) name += '_';
+  return name;
+}
+
 namespace {
 
 /// Lists have two fields for each number, the real and the imaginary part.

@@ -29,6 +29,9 @@ std::string csv_line(const std::vector<std::string>& fields);
 
 /// The headings as they can stand in one table: one that is there already gets a number, "t" -> "t (2)".
 std::vector<std::string> distinct_headings(const std::vector<std::string>& headings);
+/// A heading of tchat's own beside headings that a problem gives, which stay what they are: `name`, with '_' behind it
+/// while one of them is the same.
+std::string own_heading(std::string name, const std::vector<std::string>& given);
 
 // One way to write any table: each format is a TableWriter, and a row in the list of formats.
 

@@ -14,6 +14,7 @@
 #include "base/messages.hpp"
 #include "files/auto_format.hpp"
 #include "files/diagnostics_file.hpp"
+#include "files/recorded_labels.hpp"
 #include "files/run_files.hpp"
 #include "files/solution_file_reader.hpp"
 #include "model/events.hpp"
@@ -468,6 +469,7 @@ bool verify_solutions(const VerifyRequest& request, std::ostream& screen, std::o
   const ExitGuard guard(plugin);
   const ProblemLibrary library(plugin, [&] { return problem_sizes(settings); });
   const HybridSystem& system = library.system();
+  require_recorded_parameters(path, system);
   resolve_names(settings, system);
   check_settings_against(system, settings, {constants});
   for (const std::string& warning : file.warnings) warnings << "tchat: warning: " << warning << '\n';

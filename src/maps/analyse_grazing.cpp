@@ -9,6 +9,7 @@
 #include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "files/auto_format.hpp"
+#include "files/recorded_labels.hpp"
 #include "files/run_files.hpp"
 #include "files/solution_file_reader.hpp"
 #include "maps/grazing_point.hpp"
@@ -84,6 +85,7 @@ void analyse_label(const GrazingRequest& request, std::ostream& screen, std::ost
       resolve_plugin_of_run(request.problem, run_path(path), recorded_problem(settings, constants), warnings),
       [&] { return problem_sizes(settings); });
   const HybridSystem& system = library.system();
+  require_recorded_parameters(path, system);
   resolve_names(settings, system);
   check_settings_against(system, settings, {constants});
   print_warnings(warnings, file.warnings);

@@ -283,7 +283,7 @@ void require_section(const LabelledSolution& solution, const RunSettings& settin
       "label {} of {}: the orbit has no section, but {} needs one\n"
       "  Give the problem one more event function, which falls through zero once in each period, as {} - {:.4g}, and "
       "an identity jump unless it has one; then the branch with that section is\n"
-      "    tchat simulate {} -s {} IRS=1 --signature {},{},{} --dat {}_cut\n"
+      "    tchat simulate{} -s {} IRS=1 --signature {},{},{} --dat {}_cut\n"
       "    tchat run{} -c {}_cut -d {}_cut -o {}_cut\n"
       "  and its labels are of orbits with a section.",
       solution.label, path, what, system.state_name(1), middle, problem, name, field,

@@ -9,6 +9,7 @@
 
 #include "base/messages.hpp"
 #include "files/auto_format.hpp"
+#include "files/recorded_labels.hpp"
 #include "files/replaced_file.hpp"
 #include "files/run_files.hpp"
 #include "files/solution_file_reader.hpp"
@@ -292,6 +293,7 @@ std::vector<std::string> begin_grazing_tori(const ResegmentRequest& request, con
                                [&] { return problem_sizes(given); });
   const HybridSystem& system = library.system();
   resolve_names(given, system);
+  require_recorded_parameters(path, system);
   const LabelledSolution torus = in_layout(solution, system.layout());
   RunSettings settings = grazing_torus_settings(given, torus, name, system, is_overridden(request.overrides, "ICP"));
   apply_overrides(settings, request.overrides, &warnings);
@@ -332,6 +334,7 @@ std::vector<std::string> resegment(const ResegmentRequest& asked, std::ostream& 
   const HybridSystem& system = library.system();
   resolve_names(labelled.settings, system);
   check_settings_against(system, labelled.settings, {constants});
+  require_recorded_parameters(path, system);
   place_source(labelled, system.layout(), path);
   std::vector<Birth::InnerContact> lost;
   const LabelledOrbit source =

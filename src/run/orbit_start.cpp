@@ -8,6 +8,7 @@
 #include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "files/dat_file.hpp"
+#include "files/recorded_labels.hpp"
 #include "files/replaced_file.hpp"
 #include "files/run_files.hpp"
 #include "files/solution_file_reader.hpp"
@@ -392,6 +393,7 @@ const LabelledSolution& find_start(const SolutionFile& file, const std::string& 
 SelectedStart start_from_solution(const std::string& path, const RunSettings& settings, const HybridSystem& system,
                                   const std::vector<int>& free_parameters, const RunRequest& request) {
   const SolutionFile file = read_solution_file(path, settings.start);
+  require_recorded_parameters(path, system);
   const LabelledSolution solution = in_layout(find_start(file, path, settings, request), system.layout());
   SelectedStart selected;
   selected.source = path;

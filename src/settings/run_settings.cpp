@@ -13,9 +13,13 @@ std::optional<std::string> recorded_problem(const RunSettings& settings, const s
 
 std::string problem_to_record(const std::string& problem, const std::string& constants) {
   const fs::path path(problem);
-  const fs::path folder = fs::path(constants).parent_path();
-  if (path.is_absolute() || folder.empty()) return problem;
-  return fs::absolute(path).lexically_normal().lexically_proximate(fs::absolute(folder).lexically_normal()).string();
+  const fs::path given = fs::path(constants).parent_path();
+  if (!path.is_absolute() && given.empty()) return problem;
+  const fs::path folder = fs::absolute(given.empty() ? "." : given).lexically_normal();
+  const fs::path place = fs::absolute(path).lexically_normal();
+  const bool share_a_folder = std::next(place.begin()) != place.end() && std::next(folder.begin()) != folder.end() &&
+                              *std::next(place.begin()) == *std::next(folder.begin());
+  return !path.is_absolute() || share_a_folder ? place.lexically_proximate(folder).string() : problem;
 }
 
 }  // namespace tchat

@@ -11,6 +11,7 @@
 #include "base/messages.hpp"
 #include "base/words.hpp"
 #include "files/dat_file.hpp"
+#include "files/recorded_labels.hpp"
 #include "files/run_files.hpp"
 #include "files/solution_file_reader.hpp"
 #include "model/events.hpp"
@@ -349,6 +350,7 @@ void apply_label(const SimulationRequest& request, const SimulationConstants& co
                                 solution.label,
                                 solution.dimension > 0 ? solution.dimension : static_cast<int>(solution.states.rows()),
                                 system.name(), system.dimension()));
+  require_recorded_parameters(path, system);
   const LabelledSolution placed = in_layout(solution, system.layout());
   for (std::size_t k = 0; k < std::min(placed.parameters.size(), static_cast<std::size_t>(start.par.size())); ++k)
     start.par(static_cast<Eigen::Index>(k)) = placed.parameters[k];

@@ -124,6 +124,28 @@ TEST_CASE("a label that does not fit the constants") {
       {"q.good", "label 1", "2 segments"});
 }
 
+TEST_CASE("labels of a problem whose parameters have other places now") {
+  const Workspace workspace;
+  const auto formulas = [](const std::string& parameters, const std::string& omega = "omega") {
+    return "par " + parameters +
+           "\ninit y2=1\ngrowth = 1 - y1^2 - y2^2\nx' = v\nv' = alpha*y2 - 0.1*v - x\n"
+           "y1' = growth*y1 + " +
+           omega + "*y2\ny2' = growth*y2 - " + omega + "*y1\nevent top = v\nafter any: top -> identity\n";
+  };
+  workspace.write("osc.tch", formulas("alpha=2, omega=2"));
+  REQUIRE(workspace.tchat("simulate osc --dat s").status == 0);
+  REQUIRE(workspace.tchat("run osc -c s -d s -o a ICP=[alpha] NMX=4").status == 0);
+  workspace.write("osc.tch", formulas("alpha=2, m=1, omega=2"));
+  for (const char* const command : {"run osc -c r.a -s a IRS=EP1 -o b", "simulate osc -s a IRS=EP1", "verify a",
+                                    "resegment a EP1 --to double -o b"})
+    check_refused(workspace.tchat(command),
+                  {"q.a: PAR(2) was omega when the file was written, and is m in problem Osc"});
+  workspace.write("osc.tch", formulas("alpha=2, frequency=2", "frequency"));
+  check_refused(workspace.tchat("verify a"), {"PAR(2) was omega"});
+  workspace.write("osc.tch", formulas("alpha=2, omega=2, m=1"));  // behind the others
+  CHECK(workspace.tchat("verify a").status == 0);
+}
+
 TEST_CASE("plugins that are no plugins") {
   const Workspace workspace;
   std::ofstream(workspace.file("empty.so")).close();

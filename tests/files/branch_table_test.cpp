@@ -56,6 +56,11 @@ TEST_CASE("numbers are read back exactly") {
     CHECK(std::strtod(csv_field(TableCell(value)).c_str(), nullptr) == value);
 }
 
+TEST_CASE("states keep their names, and columns of tchat's own give way") {
+  CHECK(own_heading("t", {"x", "v"}) == "t");
+  CHECK(own_heading("t", {"x", "t", "t_"}) == "t__");
+}
+
 TEST_CASE("headings that are there already get a number") {
   CHECK(distinct_headings({"t", "x", "t", "t", "t (2)"}) ==
         std::vector<std::string>{"t", "x", "t (2)", "t (3)", "t (2) (2)"});
