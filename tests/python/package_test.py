@@ -9,6 +9,7 @@ import csv
 import gc
 import io
 import json
+import multiprocessing
 import os
 import pathlib
 import re
@@ -194,6 +195,140 @@ class ClosedForms(unittest.TestCase):
         self.assertEqual(len(sweep.frame()), len(sweep))
 
 
+CIRCUIT = """par R=1
+init i=1, t=0.5
+i' = -R*i
+t' = i - t
+event low = i - 0.3
+jump up: i -> 1.2
+after any: low -> up
+"""
+OSCILLATOR = """par alpha=2, omega=2
+init x=0.1, y2=1
+growth = 1 - y1^2 - y2^2
+x' = v
+v' = alpha*y2 - 0.1*v - x
+y1' = growth*y1 + omega*y2
+y2' = growth*y2 - omega*y1
+event maximum = v
+after any: maximum -> identity
+"""
+
+
+def amplitude(alpha, omega=2.0):
+    return alpha / np.hypot(1 - omega ** 2, 0.1 * omega)
+
+
+def _continued(folder, alpha, results):
+    """The branch that one of several processes computes in one folder: its first parameter and largest x."""
+    problem = tchat.Problem(os.path.join(folder, "forced.tch"), folder=folder)
+    branch = problem.simulate(alpha=alpha).orbit.continue_(alpha=(alpha, alpha + 0.5), both=False, DS=0.05)
+    results.put((alpha, float(branch["alpha"][0]), float(branch["MAX x"][0])))
+
+
+class Studies(unittest.TestCase):
+    """What a notebook does again and again, in one folder."""
+
+    def test_several_processes_in_one_folder_have_files_of_their_own(self):
+        folder = tempfile.mkdtemp()
+        pathlib.Path(folder, "forced.tch").write_text(OSCILLATOR)
+        results = multiprocessing.Queue()
+        jobs = [multiprocessing.Process(target=_continued, args=(folder, 1.0 + 0.1 * k, results)) for k in range(8)]
+        for job in jobs:
+            job.start()
+        found = sorted(results.get(timeout=120) for _ in jobs)
+        for job in jobs:
+            job.join()
+        self.assertEqual(len(found), 8)
+        for alpha, first, largest in found:
+            self.assertAlmostEqual(first, alpha, places=12)
+            self.assertAlmostEqual(largest / amplitude(alpha), 1.0, places=4)
+        self.assertEqual([name for name in os.listdir(folder) if "claimed" in name], [])
+        shutil.rmtree(folder)
+
+    def test_a_branch_whose_files_another_run_has_replaced_is_refused(self):
+        problem = tchat.Problem(OSCILLATOR)
+        orbit = problem.simulate().orbit
+        old = orbit.continue_(alpha=(1, 2), name="same")
+        new = orbit.continue_(alpha=(2, 3), name="same")
+        self.assertGreaterEqual(new["1/alpha"].min(), 1 / 3.2)
+        for use in (lambda: old["1/alpha"], lambda: old.labels, lambda: old.verify(), lambda: old.picture()):
+            self.assertRaisesRegex(tchat.Error, "another run has replaced this file", use)
+
+    def test_formulas_never_replace_a_file_of_the_user(self):
+        folder = tempfile.mkdtemp()
+        tchat.Problem(OSCILLATOR, name="own", folder=folder)
+        again = tchat.Problem(OSCILLATOR.replace("alpha=2", "alpha=3"), name="own", folder=folder)
+        self.assertIn("alpha=3", pathlib.Path(again.source).read_text())
+        self.assertTrue(again.check().passed)
+        with open(again.source, "a") as file:
+            file.write("# of the user\n")
+        with self.assertRaisesRegex(tchat.Error, "not what a tchat.Problem has written"):
+            tchat.Problem(OSCILLATOR, name="own", folder=folder)
+        self.assertIn("# of the user", pathlib.Path(again.source).read_text())
+        pathlib.Path(folder, "mine.tch").write_text(OSCILLATOR)
+        tchat.Problem(OSCILLATOR, name="mine", folder=folder)  # the same
+        self.assertEqual(pathlib.Path(folder, "mine.tch").read_text(), OSCILLATOR)
+        with self.assertRaisesRegex(tchat.Error, "give another name= or folder="):
+            tchat.Problem(CIRCUIT, name="mine", folder=folder)
+        shutil.rmtree(folder)
+
+    def test_states_may_be_called_as_columns_of_tchat(self):
+        circuit = tchat.Problem(CIRCUIT)
+        simulation = circuit.simulate(events=3, transient_events=0)
+        trajectory, events = simulation.trajectory, simulation.events
+        rows = trajectory.segment == 2
+        np.testing.assert_allclose(trajectory["i"][rows], 1.2 * np.exp(-(trajectory.t[rows] - events.t[0])), rtol=1e-7)
+        self.assertEqual(trajectory.columns, ["segment", "i_", "j", "k", "t_", "i", "t"])
+        self.assertEqual(set(trajectory["i_"]), {1.0})
+        self.assertEqual(trajectory["t"][0], 0.5)
+        orbit = circuit.simulate().orbit.orbit
+        self.assertEqual(orbit.state_names, ["i", "t"])
+        np.testing.assert_allclose(orbit["i"][0], orbit["i"][0, 0] * np.exp(-orbit.t[0]), rtol=1e-6)
+
+    def test_why_a_branch_ends(self):
+        problem = tchat.Problem(OSCILLATOR)
+        orbit = problem.simulate().orbit
+        branch = orbit.continue_(alpha=(1, 2.5))
+        self.assertEqual([end.reason for end in branch.stopped], ["bound", "bound"])
+        self.assertIn("stopped: alpha left the bounds RL0, RL1: ", repr(branch))
+        with self.assertWarnsRegex(tchat.TchatWarning, "stopped after .* points computed, before the bound"):
+            short = orbit.continue_(alpha=(1, 40), NMX=5, both=False)
+        self.assertEqual(short.stopped[0].reason, "points")
+
+    def test_columns_and_labels(self):
+        branch = tchat.load("impacting")
+        self.assertIn("alpha", branch)
+        self.assertNotIn("nothing", branch)
+        self.assertEqual(branch.columns, branch.headings())
+        self.assertIn("PD", dir(branch))
+        self.assertEqual(branch.LPD, [])
+        self.assertRaises(AttributeError, lambda: branch.PDD)
+        label = branch.label("PD1")
+        self.assertLess(np.min(np.abs(label.multipliers + 1)), 1e-5)
+        self.assertEqual(label["PERIOD"], label.period)
+        self.assertRaisesRegex(tchat.Error, "no 'PERIODS'", lambda: label["PERIODS"])
+        self.assertRaisesRegex(tchat.Error, "p.-h|./-h", tchat.load, "-h")
+
+    def test_multipliers_keep_their_columns(self):
+        """Those of the forced oscillator are a constant pair and the cycle's, whatever their order in the file."""
+        run = tchat.load("alpha")
+        steps = np.abs(np.diff(run.multipliers, axis=0))
+        self.assertLess(np.nanmax(steps), 1e-6)
+
+    def test_powers_of_signatures(self):
+        self.assertEqual(tchat.orbit.read_signature("{{(1,1,1)}^2, (2,2,2)}^2"),
+                         [(1, 1, 1), (1, 1, 1), (2, 2, 2)] * 2)
+        self.assertRaisesRegex(tchat.Error, "no signature that could be written out", tchat.orbit.read_signature,
+                               "{(1,1,1)}^99999999999")
+
+    def test_values_of_a_sweep(self):
+        sweep = tchat.sweep("linosc", over={"alpha": np.linspace(2, 3, 5)}, omega=2.0072)
+        self.assertEqual(sorted(set(sweep["alpha"])), [2.0, 2.25, 2.5, 2.75, 3.0])
+        for wrong in ((2, 3), 5, (2, 3, 2.5), (2, 2.1, 3, 4, 5), ("a", "b", "c")):
+            self.assertRaisesRegex(tchat.Error, "over=.'alpha'", tchat.sweep, "linosc", over={"alpha": wrong})
+
+
 class Explored(unittest.TestCase):
     """A diagram of one branch, whose largest values are amplitudes of the oscillator without impacts."""
 
@@ -265,7 +400,8 @@ class Auto(unittest.TestCase):
             blocks = [block for block in (blocks[k] for k in range(len(blocks.data))) if block["Multipliers"]]
             ours = [np.nan_to_num(row[~np.isnan(row)], posinf=1e99, neginf=-1e99) for row in run.multipliers]
             theirs = [[complex(*pair) for pair in block["Multipliers"]] for block in blocks]
-            self.assertEqual(theirs, [list(row) for row in ours])
+            order = (lambda row: sorted(row, key=lambda one: (one.real, one.imag)))  # columns follow one multiplier each
+            self.assertEqual([order(row) for row in theirs], [order(row) for row in ours])
 
 
 class Running(unittest.TestCase):

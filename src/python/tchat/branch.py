@@ -1,17 +1,58 @@
 """Branches: the points of a run with all that its files know of them, and where their labels lead."""
 
 import base64
+import collections
+import functools
 import os
 import re
 import tempfile
+import warnings
 
 import numpy as np
 
 from .orbit import _axes, read_labels, read_orbit, read_signature
-from .program import Error, GrowingPoints, ProgressBar, execute
+from .program import Error, GrowingPoints, ProgressBar, TchatWarning, execute
 from .tables import as_frame, read_table
 
 _PLACES = {"grazing": "grazing-curve"}  # what resegment(to=) calls shorter
+
+
+End = collections.namedtuple("End", "reason text")
+End.__doc__ = """Why a branch has no further points in one direction: a word ("bound", "points", "closed",
+"special_point", "curve_end", "equilibrium", "no_orbit", "unresolved", "no_convergence", "first_step", "interrupted"),
+and the sentence of tchat."""
+
+
+@functools.lru_cache(maxsize=None)
+def _types(program=None):
+    """The letters of all types of points."""
+    return frozenset(read_table(execute(["table", "--types", "--csv"], program=program))["type"])
+
+
+def _tracked(multipliers, pieces):
+    """Each multiplier in a column of its own along a piece of the branch: from a point to the next one, pairs are formed
+    in the order of their distance."""
+    result = multipliers.copy()
+    for begin, end in pieces:
+        before = result[begin]
+        for row in range(begin + 1, end):
+            now = multipliers[row]
+            left, ordered = list(range(len(now))), np.full(len(now), np.nan, dtype=complex)
+            distance = np.abs(before[:, None] - now[None, :])
+            distance[np.isnan(distance)] = np.inf
+            for place in np.argsort(distance, axis=None):
+                i, j = divmod(int(place), len(now))
+                if np.isinf(distance[i, j]):
+                    break
+                if np.isnan(ordered[i]) and j in left:
+                    ordered[i] = now[j]
+                    left.remove(j)
+            for i in np.flatnonzero(np.isnan(ordered)):
+                if left:
+                    ordered[i] = now[left.pop(0)]
+            result[row] = ordered
+            before = ordered if np.isfinite(ordered).any() else before
+    return result
 
 
 class Part:
@@ -32,22 +73,60 @@ class Branch:
                         label, kind, stable, admissible (1, 0, NaN where it is not known), the columns of the p-file,
                         fixed parameters, newton_iterations; and whatever `tchat plot` takes for an axis: "x2@wall"
                         (points x values in a period where there are several), "1/omega"
-    branch.multipliers  complex, points x most multipliers, NaN beyond a point's own
+    branch.multipliers  complex, points x most multipliers, NaN where a point has fewer; a column follows one of them
+                        along the branch
     branch.labels       the labelled points (Label); branch.PD those of a type, branch.label("PD1") one of them
+    branch.stopped      why it has no further points, an End for each direction: reason, text
     branch.screen       what tchat printed, where it was run from here
+
+    "omega" in branch, branch.columns: the columns of the table. A Branch is of the files that it has read: where another
+    run has replaced them, what it has not read yet is an Error.
     """
 
     def __init__(self, path, problem=None, screen="", program=None):
         self.path, self.problem, self.screen = path, problem, screen
+        self._file = os.path.abspath(path)
         self._program = problem.program if problem else program
-        columns = read_table(execute(["table", path, "--csv"], program=self._program))
+        self._state = self._file_state()
+        columns = read_table(execute(["table", self._file, "--csv"], program=self._program))
         parts = [name for name in columns if re.fullmatch(r"multiplier[0-9]+_(re|im)", name)]
         self.multipliers = np.array([columns[name] for name in parts[::2]] or np.empty((0, len(columns["point"]))),
                                     dtype=complex).T
         if parts:
             self.multipliers += 1j * np.array([columns[name] for name in parts[1::2]]).T
         self._table, self._columns = columns, {k: v for k, v in columns.items() if k not in parts}
+        pieces = list(zip(columns["section"], columns["branch"]))
+        begins = [row for row in range(len(pieces)) if row == 0 or pieces[row] != pieces[row - 1]] + [len(pieces)]
+        self.multipliers = _tracked(self.multipliers, list(zip(begins, begins[1:])))
         self._labels = None
+        self.stopped = self._ends()
+
+    def _file_state(self):
+        try:
+            state = os.stat(self._file)
+        except (OSError, ValueError):
+            return None
+        return state.st_ino, state.st_size, state.st_mtime_ns
+
+    def _check(self):
+        """Are the files those that the points are from?"""
+        if self._file_state() != self._state:
+            raise Error("%s: another run has replaced this file since the branch was read; read it again with "
+                        "tchat.load(), or give runs names of their own with name=" % self.path)
+
+    def _ends(self):
+        try:
+            with open(_beside(self._file, "d"), encoding="utf-8", errors="replace") as file:
+                return [End(*found) for found in re.findall(r"^ *[0-9]+ +[0-9]+  END (\w+): (.*)$", file.read(), re.M)]
+        except OSError:
+            return []
+
+    def warn_of_ends(self):
+        """Warns of each direction that ended by the number of points, before the bounds that were given."""
+        for end in self.stopped:
+            if end.reason == "points":
+                warnings.warn("%s: stopped after %s, before the bound; NMX=%d goes on" %
+                              (self.path, end.text, 4 * len(self)), TchatWarning, stacklevel=4)
 
     def __len__(self):
         return len(self._columns["point"])
@@ -57,8 +136,16 @@ class Branch:
             self._columns[name] = self._quantity(name)
         return self._columns[name]
 
+    def __contains__(self, name):
+        return name in self._columns
+
+    @property
+    def columns(self):
+        return self.headings()
+
     def _quantity(self, name):
-        columns = read_table(execute(["table", self.path, "--csv", "--column", name], program=self._program))
+        self._check()
+        columns = read_table(execute(["table", self._file, "--csv", "--column", str(name)], program=self._program))
         values = [column for heading, column in columns.items() if heading not in ("section", "point")]
         return values[0] if len(values) == 1 else np.array(values).T
 
@@ -72,7 +159,8 @@ class Branch:
     @property
     def labels(self):
         if self._labels is None:
-            path = _beside(self.path, "q")
+            self._check()
+            path = _beside(self._file, "q")
             self._labels = [Label(self, path, row) for row in read_labels(path, self._program)]
         return self._labels
 
@@ -89,9 +177,12 @@ class Branch:
         return self.label(name).orbit
 
     def __getattr__(self, name):
-        if re.fullmatch(r"[A-Z][A-Z0-9]{1,2}", name):
+        if re.fullmatch(r"[A-Z][A-Z0-9]+", name) and name in _types(self._program):
             return [label for label in self.labels if name in re.sub(r"[0-9]+( |$)", r"\1", label.name).split()]
         raise AttributeError("%r has no %r" % (type(self).__name__, name))
+
+    def __dir__(self):
+        return sorted(set(super().__dir__()) | {kind for kind in self["type"] if kind})
 
     def parts(self):
         """The branch cut where it, its stability or admissibility change: the line from a point to the next belongs to
@@ -131,19 +222,22 @@ class Branch:
         """The bytes of the PNG that `tchat plot` draws of the branch; words are its options, as "-y", "MAX x"."""
         with tempfile.TemporaryDirectory() as folder:
             file = os.path.join(folder, "branch.png")
-            execute(["plot", self.path, "-o", file] + list(words), program=self._program)
+            self._check()
+            execute(["plot", self._file, "-o", file] + list(words), program=self._program)
             with open(file, "rb") as picture:
                 return picture.read()
 
     def html(self, file, *words):
         """Writes the page that `tchat plot` makes of the branch, for a browser: zoom, the values of points, and the
         orbits of labels. file ends in .html; words are options of `tchat plot`, as "-y", "MAX x". Returns file."""
-        execute(["plot", self.path, "-o", file] + _plugin(self.problem) + list(words), program=self._program)
+        self._check()
+        execute(["plot", self._file, "-o", file] + _plugin(self.problem) + list(words), program=self._program)
         return file
 
     def verify(self, *names, tolerance=None):
         """`tchat verify`: labelled orbits against forward integration. A Report, whose `passed` is the verdict."""
-        words = ["verify", _beside(self.path, "q")] + list(names) + _plugin(self.problem)
+        self._check()
+        words = ["verify", _beside(self._file, "q")] + list(names) + _plugin(self.problem)
         return execute(words + (["--tolerance", tolerance] if tolerance else []), program=self._program, accepted=(0, 1))
 
     def _repr_png_(self):
@@ -154,20 +248,22 @@ class Branch:
                                                                   "kind", "stable", "admissible")][0]
         rows = "".join("<tr><td>%s</td><td>%.10g</td><td>%s</td></tr>" %
                        (self["name"][row] or self["label"][row], self[first][row], self["kind"][row])
-                       for row in np.flatnonzero(self["label"] > 0))
+                       for row in np.flatnonzero((self["label"] > 0) & (self["type"] != "RG")))
         return ("<p>%s</p><img src='data:image/png;base64,%s' width='600'><table><tr><th>label</th><th>%s</th>"
                 "<th></th></tr>%s</table>" % (_escaped(repr(self)), base64.b64encode(self.picture()).decode(),
                                               _escaped(first), rows))
 
     def __repr__(self):
-        return "%s: %d points, %d of them with labels" % (self.path, len(self), np.count_nonzero(self["label"] > 0))
+        text = "%s: %d points, %d of them with labels" % (self.path, len(self), np.count_nonzero(self["label"] > 0))
+        return text + "".join("; stopped: %s" % end.text for end in self.stopped)
 
 
 class Label:
     """A labelled point of a branch, and what it leads to.
 
     label.name, label.type, label.label, label.point     "PD1", "PD", 4, and the number of the point
-    label["omega"]       a parameter, or a column of the table of labels (`tchat labels --csv`)
+    label["omega"]       a parameter, or a column of the table of labels (`tchat labels --csv`) or of the branch
+    label.multipliers    complex, those of its point
     label.orbit          its states; label.signature, label.period
     label.coefficient, label.uncertainty, label.verdict  its normal form: NaN, NaN and "" where it has none;
                          label["normal_form"] is the name of the coefficient, "c"
@@ -181,17 +277,35 @@ class Label:
         self._orbit = None
 
     def __getitem__(self, name):
-        if name not in self._row:
-            raise Error("%s, %s: no %r; there are %s" % (self._path, self.name, name, ", ".join(self._row)))
-        return self._row[name]
+        if name == "PERIOD":
+            return self.period  # with all its digits
+        if name in self._row:
+            return self._row[name]
+        if name in self.branch and self._place() is not None:
+            return self.branch[name][self._place()]
+        raise Error("%s, %s: no %r; there are %s" %
+                    (self._path, self.name, name, ", ".join([*self._row, *self.branch.columns])))
+
+    def _place(self):
+        """The row of its point in the branch."""
+        rows = np.flatnonzero(self.branch["label"] == self.label)
+        return int(rows[0]) if len(rows) else None
+
+    @property
+    def multipliers(self):
+        row = self._place()
+        values = self.branch.multipliers[row] if row is not None else np.empty(0, dtype=complex)
+        return values[~np.isnan(values)]
 
     @property
     def orbit(self):
         if self._orbit is None:
+            self.branch._check()
             self._orbit = read_orbit(self._path, self._row, self.branch._program)
         return self._orbit
 
     def _problem(self):
+        self.branch._check()
         if self.branch.problem is None:
             raise Error("%s: the problem is not known; load it with problem= (a tchat.Problem)" % self.branch.path)
         return self.branch.problem
@@ -202,8 +316,11 @@ class Label:
         return self._problem().continue_from(start + list(words), {"IRS": self.label, **values})
 
     def switch(self, *words, **values):
-        """The branch that is born here: at a branch point, a period doubling, a Hopf bifurcation."""
+        """The branch that is born here: at a branch point, a period doubling, a Hopf bifurcation. At a period doubling
+        both directions have the same orbits: one is followed, with both=True both are."""
         switching = {"ISW": -1}
+        if self.type == "PD":
+            switching["both"] = False
         if self.type == "HB":
             switching.update(IPS=180, GCHIND=[0], GCGIND=[0])
         return self.continue_(*words, **{**switching, **values})
@@ -225,6 +342,7 @@ class Label:
 
     def grazing(self, *words):
         """`tchat grazing`: what follows from this contact, as a Report."""
+        self.branch._check()
         return execute(["grazing", self._path, self.label] + list(words) + _plugin(self.branch.problem),
                        program=self.branch._program)
 
@@ -258,6 +376,8 @@ def _beside(path, letter):
 def load(name, problem=None, program=None):
     """The branch whose files are p.NAME, with q.NAME and d.NAME beside it; `name` may be p.NAME, with a folder."""
     path = os.fsdecode(name)
+    if path.startswith("-"):  # no option
+        path = os.path.join(".", path)
     folder, last = os.path.split(path)
     of_name = os.path.join(folder, "p." + last)
     is_points = last[:2] in ("p.", "b.") or last == _FORTS["p"]

@@ -25,9 +25,9 @@ class Orbit:
         self.period, self.signature = row["period"], read_signature(row["signature"])
         self.parameters = {name: value for name, value in list(row.items())[list(row).index("kind") + 1:]
                            if not np.isnan(value)}
-        segments = int(columns["segment"][-1])
-        self.tau, self.t = (columns[name].reshape(segments, -1) for name in ("tau", "t"))
-        self.state_names = [name for name in columns if name not in ("segment", "tau", "t")]
+        segment, tau, t, *self.state_names = columns  # a state may be called t
+        segments = int(columns[segment][-1])
+        self.tau, self.t = columns[tau].reshape(segments, -1), columns[t].reshape(segments, -1)
         self.states = np.array([columns[name].reshape(segments, -1) for name in self.state_names]).swapaxes(0, 1)
         self.durations = self.t[:, -1] - self.t[:, 0]
 
@@ -71,6 +71,7 @@ def _axes():
     return plt.gca()
 
 
+_LONGEST_SIGNATURE = 10 ** 7  # characters
 _POWER = re.compile(r"(\{[^{}]*\}|\([^()]*\))\^(\d+)")
 
 
@@ -78,7 +79,9 @@ def read_signature(text):
     """[(1, 2, 2), (1, 1, 1)] of "{(1,2,2), (1,1,1)}"; a power repeats what is in front of it. None of nothing."""
     text = text or ""
     while power := _POWER.search(text):
-        text = text[:power.start()] + power[1] * int(power[2]) + text[power.end():]
+        if len(power[1]) * int(power[2]) > _LONGEST_SIGNATURE:
+            raise Error("%s...: a power of %s is no signature that could be written out" % (text[:40], power[2][:20]))
+        text = text[:power.start()] + power[1].strip("{}") * int(power[2]) + text[power.end():]
     triples = re.findall(r"\((\d+),(\d+),(\d+)\)", text)
     return [tuple(map(int, triple)) for triple in triples] or None
 

@@ -1,5 +1,7 @@
 """A problem: formulas or a plugin, and the folder that its files are in."""
 
+import contextlib
+import hashlib
 import os
 import shutil
 import tempfile
@@ -12,6 +14,30 @@ from .simulation import Simulation
 from .start import Start
 from .sweep import over_words, read_sweep
 from .words import option_words, split_bounds, state_word, value_words
+
+
+_WRITTEN = "# formulas of tchat.Problem "
+
+
+def _write_formulas(path, text):
+    """Replaces what a Problem has written there, and no file of the user's: its last line is a hash of the others."""
+    whole = text + _WRITTEN + hashlib.sha256(text.encode()).hexdigest()[:16] + "\n"
+    try:
+        with open(path, encoding="utf-8") as file:
+            known = file.read()
+    except FileNotFoundError:
+        pass
+    except (OSError, ValueError) as error:
+        raise Error("%s: cannot be read, and is not written over: %s" % (path, error)) from None
+    else:
+        there, mark, of_text = known.rpartition(_WRITTEN)
+        if known == text:
+            return
+        if not mark or hashlib.sha256(there.encode()).hexdigest()[:16] != of_text.strip():
+            raise Error("%s: there is such a file, which is not what a tchat.Problem has written; give another name= or "
+                        "folder=, or use the file itself: tchat.Problem(%r)" % (path, path))
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(whole)
 
 
 class Problem:
@@ -40,8 +66,7 @@ class Problem:
         if "\n" in source:
             self.name = name or "problem"
             self.source = self.path(self.name + ".tch")
-            with open(self.source, "w", encoding="utf-8") as file:
-                file.write(source if source.endswith("\n") else source + "\n")
+            _write_formulas(self.source, source if source.endswith("\n") else source + "\n")
         else:
             self.source = os.path.abspath(source)
             self.name = name or os.path.splitext(os.path.basename(source))[0]
@@ -52,15 +77,28 @@ class Problem:
     def path(self, name):
         return os.path.join(self.folder, name)
 
-    def _new_name(self, kind, name):
+    @contextlib.contextmanager
+    def _named(self, kind, name):
+        """The name of new files: `name`, else kind1, kind2, ..., which no other process of this folder has meanwhile."""
         if name:
-            return name
+            yield name
+            return
         while True:
             self._counts[kind] = self._counts.get(kind, 0) + 1
             name = "%s%d" % (kind, self._counts[kind])
-            if not any(os.path.exists(self.path(file % name)) for file in
+            claim = self.path(".%s.claimed" % name)
+            try:
+                os.close(os.open(claim, os.O_CREAT | os.O_EXCL | os.O_WRONLY))
+            except FileExistsError:
+                continue
+            try:
+                if any(os.path.exists(self.path(file % name)) for file in
                        ("p.%s", "q.%s", "%s.dat", "%s.trajectory", "%s.sweep", "%s.json")):
-                return name
+                    continue
+                yield name
+                return
+            finally:
+                os.unlink(claim)
 
     def _execute(self, command, words, accepted=(0,)):
         return execute([command] + words, self.folder, self.program, accepted=accepted)
@@ -85,15 +123,16 @@ class Problem:
         itself, or as long as time= or events= say: a Simulation, whose orbit= is the periodic orbit, None without one.
         refine=True: `state` is a guess of an orbit, stable or not, which Newton's method finds. `free` is the parameter that the orbit is followed in unless continue_ says another. Other keywords are
         parameters and constants; words are further options of `tchat simulate`."""
-        name = self._new_name("simulation", name)
-        options = option_words(dict(
-            state=state_word(state), free=free, time=time, events=events, transient_time=transient_time,
-            transient_events=transient_events, refine=refine, signature=signature, without_sections=without_sections,
-            lyapunov=lyapunov, tolerance=tolerance, stiff=stiff, dat=None if lyapunov else name))
-        words = [self.name, "-p", self.source, "-o", name] + options + list(words) + value_words(values, self.program)
-        screen = self._execute("simulate", words, accepted=(0, 1))
-        found = screen.passed and os.path.exists(self.path(name + ".dat"))
-        return Simulation(self.path(name), screen, Start(self, name, True) if found else None)
+        with self._named("simulation", name) as name:
+            options = option_words(dict(
+                state=state_word(state), free=free, time=time, events=events, transient_time=transient_time,
+                transient_events=transient_events, refine=refine, signature=signature,
+                without_sections=without_sections, lyapunov=lyapunov, tolerance=tolerance, stiff=stiff,
+                dat=None if lyapunov else name))
+            words = [self.name, "-p", self.source, "-o", name] + options + list(words)
+            screen = self._execute("simulate", words + value_words(values, self.program), accepted=(0, 1))
+            found = screen.passed and os.path.exists(self.path(name + ".dat"))
+            return Simulation(self.path(name), screen, Start(self, name, True) if found else None)
 
     def continue_from(self, words, values):
         """`tchat run` with these words, in this folder: its Branch.
@@ -103,7 +142,7 @@ class Problem:
         files, progress= is a function that is called for every point, or False for no progress bar.
         """
         values = dict(values)
-        name = self._new_name("branch", values.pop("name", None))
+        name = values.pop("name", None)
         progress = values.pop("progress", None)
         bounds, values = split_bounds(values, self.program)
         both = values.pop("both", bool(bounds))
@@ -112,28 +151,33 @@ class Problem:
             values.setdefault("ICP", list(bounds))
             values.setdefault("RL0", min(low, high))
             values.setdefault("RL1", max(low, high))
-        words = [self.name, "-p", self.source, "-o", name] + list(words) + (["--both"] if both else [])
-        words += value_words(values, self.program)
-        return run_words(words, name, self.folder, self.program, progress, problem=self)
+        words = list(words) + (["--both"] if both else []) + value_words(values, self.program)
+        with self._named("branch", name) as name:
+            words = [self.name, "-p", self.source, "-o", name] + words
+            branch = run_words(words, name, self.folder, self.program, progress, problem=self)
+        if bounds:
+            branch.warn_of_ends()
+        return branch
 
     def resegment(self, path, label, to, words=(), values=None):
         """`tchat resegment`: a Start with another signature. Label.resegment names what it can lead to."""
         values = dict(values or {})
-        name = self._new_name("start", values.pop("name", None))
-        words = [path, label, "--to", to, "-p", self.source, "-o", name] + list(words)
-        self._execute("resegment", words + value_words(values, self.program))
-        return Start(self, name, False)
+        with self._named("start", values.pop("name", None)) as name:
+            words = [path, label, "--to", to, "-p", self.source, "-o", name] + list(words)
+            self._execute("resegment", words + value_words(values, self.program))
+            return Start(self, name, False)
 
     def sweep(self, *words, over, jobs=1, name=None, section=None, follow=None, state=None, lyapunov=None,
-              penetration=None, max=None, **values):
+              penetration=None, max=None, events=None, transient_events=None, tolerance=None, **values):
         """`tchat sweep`: what attracts, over={"A": (0.5, 2, 200)} or two of them; section= the event whose passages are
         recorded, follow="up", "down" or "both"; max=True records the largest value of each state. A Sweep."""
-        name = self._new_name("sweep", name)
         options = option_words(dict(section=section, follow=follow, state=state_word(state), lyapunov=lyapunov,
-                                    penetration=penetration, max=max))
-        words = [self.name, "-p", self.source, "-o", name, "-j", jobs] + over_words(over) + options + list(words)
-        screen = self._execute("sweep", words + value_words(values, self.program))
-        result = read_sweep(self.path(name))
+                                    penetration=penetration, max=max, events=events,
+                                    transient_events=transient_events, tolerance=tolerance))
+        with self._named("sweep", name) as name:
+            words = [self.name, "-p", self.source, "-o", name, "-j", jobs] + over_words(over) + options + list(words)
+            screen = self._execute("sweep", words + value_words(values, self.program))
+            result = read_sweep(self.path(name))
         result.screen = screen
         return result
 
@@ -143,10 +187,10 @@ class Problem:
         its sweep; and_={"B": (1, 3)} follows special points as curves in both parameters. A Diagram. jobs= commands run
         at a time, starts= further initial states at each value; doublings=, segments=, branches= and time= (seconds)
         limit it, y= is along its picture. Parameters are those of all commands, constants those of the runs."""
-        name = self._new_name("diagram", name)
         options = option_words(dict(jobs=jobs, state=state_word(state), starts=starts, doublings=doublings,
                                     segments=segments, branches=branches, time=time)) + (["-y", y] if y else [])
-        return explore(self, words, name, over, and_, options, value_words(values, self.program))
+        with self._named("diagram", name) as name:
+            return explore(self, words, name, over, and_, options, value_words(values, self.program))
 
     def __repr__(self):
         return "problem %s in %s" % (self.name, self.folder)

@@ -11,7 +11,8 @@ from .program import Error, constant_word, execute
 
 class Trajectory:
     """Rows of O.trajectory or O.events: segment, index (rows x 3: field, event, jump), t, and columns by their
-    headings, trajectory["x1"]; parameters: values by name, from the heading; what: what each event is (else None)."""
+    headings, trajectory["x1"], which are the states' own names: where a state is called i or t, the column of the
+    field or the time is i_ or t_; parameters: values by name, from the heading; what: what each event is (else None)."""
 
     def __init__(self, path):
         try:

@@ -91,8 +91,20 @@ def read_sweep(path):
 def over_words(over):
     """--over NAME=FROM:TO:COUNT of {"gamma": (0, 0.05, 200)}."""
     words = []
-    for name, (begin, end, count) in dict(over).items():
-        words += ["--over", "%s=%r:%r:%d" % (name, float(begin), float(end), count)]
+    for name, values in dict(over).items():
+        try:
+            values = [float(one) for one in values]
+        except (TypeError, ValueError):
+            values = []
+        if len(values) > 3:
+            steps = np.diff(values)
+            if np.ptp(steps) > 1e-6 * np.abs(steps).max():
+                raise Error("over={%r: ...}: the values have to be equally spaced" % name)
+            values = [values[0], values[-1], len(values)]
+        if len(values) != 3 or values[2] != int(values[2]):
+            raise Error("over={%r: ...}: give the first value, the last one and their number, as (0, 0.05, 200), or the "
+                        "values themselves" % name)
+        words += ["--over", "%s=%r:%r:%d" % (name, *values)]
     return words
 
 

@@ -5,7 +5,7 @@ import io
 
 import numpy as np
 
-_TEXTS = ("type", "name", "kind", "signature", "free", "normal_form", "verdict")
+_TEXTS = ("type", "name", "kind", "signature", "free", "normal_form", "verdict", "meaning")
 _INTEGERS = ("section", "branch", "point", "label", "problem_type", "branch_mode", "segments", "dimension",
              "mesh_intervals", "collocation_points", "segment")
 
