@@ -135,7 +135,12 @@ Eigen::VectorXd sizes_at(const HybridSystem& system, int field, const Eigen::Vec
     if (std::isfinite(time)) longest = std::max(longest, time);
   for (const double time : times)
     if (time > rounding * longest) shortest = std::min(shortest, time);
-  return std::isfinite(shortest) ? Eigen::VectorXd(sizes.cwiseMax(shortest * f.cwiseAbs())) : sizes;
+  if (!std::isfinite(shortest)) return sizes;
+  // Near rest, terms cancel in a state's equation. What integration resolves of it, 1e-10 of its size, is 100 times
+  // their rounding.
+  constexpr double resolved = 1e-4;
+  const Eigen::VectorXd terms = by_state.cwiseAbs() * x.cwiseAbs();
+  return sizes.cwiseMax(shortest * f.cwiseAbs()).cwiseMax(resolved * std::min(by_itself, longest) * terms);
 }
 
 bool is_ordinary(double size) {

@@ -91,14 +91,16 @@ bool is_repeated(const OrbitCandidate& candidate, const SimulatedTurn& turn) {
   return false;
 }
 
-/// A motion that comes to rest has turns as small as one likes; Newton's method takes it to the equilibrium itself.
+/// A motion that comes to rest has turns as small as one likes; Newton's method takes it to the equilibrium itself, or
+/// to rounding beside it, which moves no state by a share of its size that integration resolves.
 bool is_at_rest(const OrbitCandidate& candidate, const SimulatedTurn& turn) {
   VectorXd low = turn.segments.front().low, high = turn.segments.front().high;
   for (const SimulatedSegment& segment : turn.segments) {
     low = low.cwiseMin(segment.low);
     high = high.cwiseMax(segment.high);
   }
-  return size_of(candidate, without_ignorable(candidate, high - low)) <= least_range;
+  const VectorXd range = without_ignorable(candidate, high - low);
+  return size_of(candidate, range) <= least_range || length_in_sizes(range, candidate.motion.sizes()) <= level::orbit;
 }
 
 double largest_modulus(const std::vector<std::complex<double>>& multipliers) {

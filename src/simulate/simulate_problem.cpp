@@ -499,7 +499,9 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
       say(refined_text(orbit, static_cast<long>(result.turn.size()), period.size));
     } else {
       orbit = refine(system, result, start.par, first);
-      if (!orbit.converged) say(not_refined_text(orbit, static_cast<long>(result.turn.size())));
+      if (!orbit.converged) rest = equilibrium_of(search, simulation, result.last);
+      if (!orbit.converged)
+        say(rest ? rest_text(*rest) : not_refined_text(orbit, static_cast<long>(result.turn.size())));
     }
     if (orbit.converged) say(orbit_text(system, orbit));
   } else if (request.refine) {
