@@ -41,17 +41,6 @@ Command state_words(const Eigen::VectorXd& state) {
   return {"--state", fmt::format("{}", fmt::join(state.begin(), state.end(), ","))};
 }
 
-/// The least box around numbers of each state.
-struct StateBox {
-  explicit StateBox(int n) : low(Eigen::VectorXd::Constant(n, INFINITY)), high(-low) {}
-  void add(int k, double value) {
-    if (!std::isfinite(value)) return;
-    low(k) = std::min(low(k), value);
-    high(k) = std::max(high(k), value);
-  }
-  Eigen::VectorXd low, high;
-};
-
 }  // namespace
 
 std::vector<std::size_t> AttractorSamples::first_rows() const {
@@ -109,26 +98,49 @@ Command AttractorSamples::words_of(const SweptAttractor& sample) const {
   return tchat::words_of({words, mode_words(*sample.attractor), {"--before-event"}});
 }
 
-std::vector<std::string> AttractorSamples::further_starts(int count) const {
+/// A motion that leaves says nothing of where attractors are.
+Eigen::MatrixX2d AttractorSamples::box() const {
   const auto n = static_cast<int>(state_names_.size());
-  StateBox box(n);
+  Eigen::MatrixX2d box(n, 2);
+  box.col(0).setConstant(INFINITY);
+  box.col(1).setConstant(-INFINITY);
+  const auto add = [&](int k, double value) {
+    if (!std::isfinite(value)) return;
+    box(k, 0) = std::min(box(k, 0), value);
+    box(k, 1) = std::max(box(k, 1), value);
+  };
   for (const std::string& start : table_.starts)
     if (const std::vector<double> numbers = numbers_of_start(start); std::ssize(numbers) == n)
-      for (int k = 0; k < n; ++k) box.add(k, numbers[static_cast<std::size_t>(k)]);
+      for (int k = 0; k < n; ++k) add(k, numbers[static_cast<std::size_t>(k)]);
   for (int k = 0; k < n; ++k)
     if (const std::vector<double>* column = table_.state(k + 1, state_names_))
-      for (const double value : *column) box.add(k, value);
-  if (!box.low.allFinite()) return {};
+      for (std::size_t row = 0; row < column->size(); ++row)
+        if (table_.kinds[row] != AttractorKind::none && table_.kinds[row] != AttractorKind::escape)
+          add(k, (*column)[row]);
+  return box;
+}
+
+double AttractorSamples::size() const {
+  const Eigen::MatrixX2d limits = box();
+  return limits.allFinite() ? limits.cwiseAbs().maxCoeff() : 0.0;
+}
+
+std::vector<std::string> AttractorSamples::further_starts(
+    int count, const std::function<bool(const Eigen::VectorXd&)>& is_inside) const {
+  constexpr int tries = 50;
+  const Eigen::MatrixX2d limits = box();
+  const Eigen::Index n = limits.rows();
+  if (!limits.allFinite()) return {};
   double base = 2.0;  // the sequence of Roberts: additive, with powers of the root of g^(n+1) = g + 1
-  for (int step = 0; step < 100; ++step) base = std::pow(1.0 + base, 1.0 / (n + 1));
+  for (int step = 0; step < 100; ++step) base = std::pow(1.0 + base, 1.0 / static_cast<double>(n + 1));
   std::vector<std::string> states;
-  for (int number = 1; number <= count; ++number) {
+  for (int number = 1; number <= tries * count && std::ssize(states) < count; ++number) {
     Eigen::VectorXd state(n);
-    for (int k = 0; k < n; ++k) {
-      const double place = 0.5 + number * std::pow(base, -(k + 1));
-      state(k) = box.low(k) + (place - std::floor(place)) * (box.high(k) - box.low(k));
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const double place = 0.5 + number * std::pow(base, -static_cast<double>(k + 1));
+      state(k) = limits(k, 0) + (place - std::floor(place)) * (limits(k, 1) - limits(k, 0));
     }
-    states.push_back(fmt::format("{:.4g}", fmt::join(state.begin(), state.end(), ",")));
+    if (is_inside(state)) states.push_back(fmt::format("{:.4g}", fmt::join(state.begin(), state.end(), ",")));
   }
   return states;
 }
@@ -154,7 +166,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double same_parameter = level::orbit;  // of the largest |p| of the branch
-constexpr double same_orbit = level::same;
+constexpr double same_orbit = level::same, clearly_different = level::five_digits;
 
 /// Has the parameter of a branch this value of another one?
 bool is_at(double parameter, double value, const CataloguedSection& branch) {
@@ -268,9 +280,7 @@ BranchRecognition::Verdict BranchRecognition::compare_with_labels(const OwnOrbit
                                                                   const std::string& branch) const {
   Verdict verdict = Verdict::unknown;
   for (const CataloguedSection& known : catalogue_.sections()) {
-    if (known.branch != branch || known.rests != own.section->rests ||
-        known.signature.word != own.section->signature.word)
-      continue;
+    if (known.branch != branch || known.rests != own.section->rests) continue;
     for (std::size_t row = 0; row < known.parameter.size(); ++row) {
       if (known.labels[row] == 0 || !is_at(known.parameter[row], own.parameter(), known)) continue;
       if (is_same(own, known, read_label_of(commands_.file('q', branch), known.labels[row]))) return Verdict::same;
@@ -278,6 +288,47 @@ BranchRecognition::Verdict BranchRecognition::compare_with_labels(const OwnOrbit
     }
   }
   return verdict;
+}
+
+std::optional<MirroredBranch> BranchRecognition::mirror_of(const CataloguedSection& section) const {
+  if (section.rests) return std::nullopt;
+  const std::vector<LabelledSolution> solutions = read_solution_file(commands_.file('q', section.branch)).solutions;
+  for (const CataloguedSection& known : catalogue_.sections()) {
+    if (known.branch == section.branch || known.rests) continue;
+    if (std::optional<MirroredBranch> mirror = mirror_in(known, section, solutions)) return mirror;
+  }
+  return std::nullopt;
+}
+
+std::optional<MirroredBranch> BranchRecognition::mirror_in(const CataloguedSection& known,
+                                                           const CataloguedSection& section,
+                                                           const std::vector<LabelledSolution>& solutions) const {
+  for (const LabelledSolution& solution : solutions) {
+    const auto own = std::find(section.labels.begin(), section.labels.end(), solution.label);
+    if (own == section.labels.end()) continue;
+    const Index row = own - section.labels.begin();
+    for (Index at = 0; at < std::ssize(known.labels); ++at) {
+      const int label = known.labels[static_cast<std::size_t>(at)];
+      const double period = known.numbers(0, at), own_period = section.numbers(0, row);
+      if (label == 0 || std::abs(period - own_period) > same_orbit * period ||
+          !is_at(known.parameter[static_cast<std::size_t>(at)], section.parameter[static_cast<std::size_t>(row)],
+                 known))
+        continue;
+      const LabelledSolution other = read_label_of(commands_.file('q', known.branch), label);
+      const std::vector<Index> drifting = drifting_states(system_, solution);
+      // Where both branches have one orbit, that it is its own mirror image says nothing of the others.
+      if (orbit_distance({&solution, section.own_signature}, {&other, known.own_signature}, drifting) <=
+          clearly_different)
+        continue;
+      const auto flags = reflection(solution, other, drifting, same_orbit);
+      if (!flags) continue;
+      MirroredBranch mirror{known.branch, {}};
+      for (std::size_t k = 0; k < flags->size(); ++k)
+        if ((*flags)[k]) mirror.states.push_back(system_.state_name(static_cast<int>(k) + 1));
+      return mirror;
+    }
+  }
+  return std::nullopt;
 }
 
 /// The nearest label of each place that has no label itself, each once.
@@ -339,7 +390,7 @@ std::vector<std::string> branches_of(const OrbitCatalogue& catalogue, const Swee
                                      const SweptAttractor& sample) {
   if (sample.attractor->kind == AttractorKind::rest) {
     const auto state = sweep.samples.numbers_of(sample);
-    const std::string branch = state ? catalogue.branch_with_state(sample.value, *state) : "";
+    const std::string branch = state ? catalogue.branch_with_state(sample.value, *state, sweep.samples.size()) : "";
     return branch.empty() ? std::vector<std::string>{} : std::vector<std::string>{branch};
   }
   const SignatureWord word = sweep.is_cut ? SignatureWord{{1, 0, 0}} : signature_word(*sample.attractor);

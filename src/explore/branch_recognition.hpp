@@ -47,11 +47,16 @@ class AttractorSamples {
   /// The words of `tchat simulate` that begin on an attractor, where it has been found first.
   static Command words_of(const SweepAttractor& attractor);
   double value_of(const SweepAttractor& attractor) const;
-  /// `count` states of low discrepancy in the least box around the starts and the recorded states, as --state takes
-  /// them.
-  std::vector<std::string> further_starts(int count) const;
+  /// `count` states of low discrepancy in the least box around the starts and the states recorded on attractors, as
+  /// --state takes them: those of which `is_inside` is true.
+  std::vector<std::string> further_starts(int count,
+                                          const std::function<bool(const Eigen::VectorXd&)>& is_inside) const;
+  /// The largest modulus of a state in that box.
+  double size() const;
 
  private:
+  /// Least and largest value of each state: n x 2.
+  Eigen::MatrixX2d box() const;
   /// Rows of a value and start, one of them each.
   std::vector<std::size_t> first_rows() const;
 
@@ -75,6 +80,12 @@ struct KnownBranch {
   bool is_whole = false;  ///< an orbit has the same states, and the branch has the value at which the section begins
 };
 
+/// The branch of orbits that are those of another one, reflected.
+struct MirroredBranch {
+  std::string name;
+  std::vector<std::string> states;  ///< that change their signs
+};
+
 class BranchRecognition {
  public:
   /// Views of all of them, which outlive this object.
@@ -84,6 +95,8 @@ class BranchRecognition {
 
   /// Nothing where a run was not begun, as the time limit was reached.
   std::optional<KnownBranch> branch_of(const CataloguedSection& section) const;
+  /// By labels that both have at one parameter value; nothing where there is none.
+  std::optional<MirroredBranch> mirror_of(const CataloguedSection& section) const;
 
  private:
   enum class Verdict { same, different, unknown, interrupted };
@@ -94,6 +107,8 @@ class BranchRecognition {
   Verdict compare_with_labels(const OwnOrbit& own, const std::string& branch) const;
   std::vector<KnownStart> starts_near(const OwnOrbit& own, const std::string& branch) const;
   Verdict compare_with_run(const OwnOrbit& own, const KnownStart& start) const;
+  std::optional<MirroredBranch> mirror_in(const CataloguedSection& known, const CataloguedSection& section,
+                                          const std::vector<LabelledSolution>& solutions) const;
   bool is_same(const OwnOrbit& own, const CataloguedSection& known, const LabelledSolution& other) const;
 
   const OrbitCatalogue& catalogue_;

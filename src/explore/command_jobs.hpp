@@ -12,8 +12,8 @@ namespace tchat {
 // A job is data: calls of tchat, the files that they read and those that they make. What is executed and the Makefile
 // are made from it.
 //
-// What is done leaves a stamp: the calls, and a hash of the contents of all files that they read and of those that they
-// made. A job is done again when any of these has changed.
+// What is done leaves a stamp: the calls, a hash of the program and of all files that they read, and one of those that
+// they made. A job is done again when any of these has changed.
 
 /// Calls one after the other, which make the files of one name in a folder.
 struct CommandJob {

@@ -155,7 +155,7 @@ std::string CurveCatalogue::curve_of(const CurveSection& section) const {
 std::string CurveCatalogue::curve_at(const std::string& kind, const CurvePoint& point) const {
   const VectorXd numbers = numbers_of(point);
   for (const CurveSection& known : sections_) {
-    const bool is_doubled = kind == "BP" && known.kind == "PD";
+    const bool is_doubled = (kind == "BP" && known.kind == "PD") || (kind == "PD" && known.kind == "BP");
     if (known.kind != kind && !is_doubled) continue;
     const bool may_repeat = is_doubled || kind == "GR";  // an orbit that touches does so on every turn
     const auto same = [&](const Passage& passage) {

@@ -53,7 +53,7 @@ class CurveCatalogue {
 
   /// The curve that all of `section` is on but its beginning; "" where there is none.
   std::string curve_of(const CurveSection& section) const;
-  /// The curve of this kind (of PD, too, for a BP) through a point; "" where there is none.
+  /// The curve of this kind through a point; "" where there is none. PD of an orbit is BP of the doubled one.
   std::string curve_at(const std::string& kind, const CurvePoint& point) const;
   /// Names of all curves with the orbit of a point there, or with one that this orbit repeats, or that repeats it,
   /// whatever their kinds.

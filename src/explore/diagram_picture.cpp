@@ -103,7 +103,7 @@ void add_pictures(const DiagramFiles& files, const SweepTable& sweep, ExploredDi
   diagram.quantity = files.quantity.empty() ? chosen_quantity(diagram, files, sweep) : files.quantity;
   std::vector<std::string> inputs;
   for (const ExploredBranch& branch : diagram.branches) inputs.push_back(branch.job.outputs.front());
-  inputs.push_back(files.sweep);
+  inputs.insert(inputs.end(), files.sweeps.begin(), files.sweeps.end());
   Command words = words_of({{"plot"}, inputs});
   if (!diagram.quantity.empty()) words.insert(words.end(), {"-y", diagram.quantity});
   words.insert(words.end(), {"--grey", "--labels", drawn_types(diagram, sweep.over.front())});

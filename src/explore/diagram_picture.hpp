@@ -17,7 +17,7 @@ namespace tchat {
 /// What is drawn, and from which files.
 struct DiagramFiles {
   std::string folder;                 ///< O, of the branches
-  std::string sweep;                  ///< the file
+  std::vector<std::string> sweeps;    ///< of attractors
   std::vector<std::string> monitors;  ///< columns of the branches, among them max(X)
   std::string quantity;               ///< along y; empty: chosen_quantity
 };

@@ -55,6 +55,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::string both_directions = "--both";
+constexpr int usual_points = 400;  // of a run
 
 /// "[1,2,3]"; "" for none.
 std::string all_events(int count) {
@@ -156,7 +157,7 @@ Command ExplorationCommands::run_words(bool rests) const {
     for (const std::string& name : monitors_) free += "," + name;
   Command words{fmt::format("ICP=[{}]", free),           fmt::format("RL0={}", range_.from),
                 fmt::format("RL1={}", range_.to),        fmt::format("DS={:g}", width / 200.0),
-                fmt::format("DSMAX={:g}", width / 20.0), "NMX=400"};
+                fmt::format("DSMAX={:g}", width / 20.0), fmt::format("NMX={}", usual_points)};
   if (!watched_.empty()) words.insert(words.end(), {"GRSTOP=0", "GCHGRZIND=" + watched_});
   if (!watched_.empty() && !rests) words.push_back("GCIPSI=" + watched_);
   words.insert(words.end(), constants_.begin(), constants_.end());
@@ -226,15 +227,41 @@ CommandJob ExplorationCommands::switching(const std::string& name, const SwitchP
   return result;
 }
 
+CommandJob ExplorationCommands::renamed(const std::string& name, const CommandJob& job) const {
+  CommandJob result{name, job.commands, job.inputs, files_of(name), job.given};
+  for (Command& command : result.commands)
+    for (const char* const ending : {"", "_start", "_beside"})
+      std::replace(command.begin(), command.end(), path(job.name + ending), path(name + ending));
+  for (Command& command : result.commands)
+    std::replace(command.begin(), command.end(), file('q', job.name + "_beside"), file('q', name + "_beside"));
+  return result;
+}
+
 CommandJob ExplorationCommands::one_direction(const std::string& name, const CommandJob& both,
                                               std::optional<double> other_ds) const {
-  CommandJob result{name, both.commands, both.inputs, files_of(name), both.given};
+  CommandJob result = renamed(name, both);
   Command& run = result.commands.back();
-  std::replace(run.begin(), run.end(), path(both.name), path(name));
   std::erase(run, both_directions);
   if (!other_ds) return result;
   std::erase_if(run, sets_step);
   run.push_back(fmt::format("DS={}", *other_ds));
+  return result;
+}
+
+std::optional<CommandJob> ExplorationCommands::longer(const std::string& name, const CommandJob& job) const {
+  constexpr int most = 6400;
+  const auto limits = [](const std::string& word) { return word.starts_with("NMX="); };
+  if (std::any_of(constants_.begin(), constants_.end(), limits)) return std::nullopt;
+  CommandJob result = renamed(name, job);
+  Command& run = result.commands.back();
+  const auto at = std::find_if(run.begin(), run.end(), limits);
+  const int points = at == run.end() ? usual_points : parse_integer(at->substr(4)).value_or(most);
+  if (4 * points > most) return std::nullopt;
+  const std::string word = fmt::format("NMX={}", 4 * points);
+  if (at == run.end())
+    run.push_back(word);
+  else
+    *at = word;
   return result;
 }
 

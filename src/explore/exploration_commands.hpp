@@ -111,6 +111,8 @@ class ExplorationCommands {
   /// One direction of a switch that goes in both: with its DS, or with this one, which is for the other direction.
   CommandJob one_direction(const std::string& name, const CommandJob& both, std::optional<double> other_ds) const;
   static bool goes_in_both_directions(const CommandJob& job);
+  /// The same job with four times as many points; nothing where the command line limits them, or there are enough.
+  std::optional<CommandJob> longer(const std::string& name, const CommandJob& job) const;
   /// The run along the known branch.
   CommandJob correction(const OrbitComparison& at) const;
   /// The equilibrium of a label as that of another field.
@@ -132,6 +134,7 @@ class ExplorationCommands {
   /// The same without DS: its sign has been chosen.
   Command run_words_without_step() const;
   CommandJob sweep_job(const std::string& name, const std::vector<std::string>& states, const Command& options) const;
+  CommandJob renamed(const std::string& name, const CommandJob& job) const;
   CommandJob job(const std::string& name, Commands commands, std::vector<std::string> inputs) const;
   std::string at_value(double value) const;
 

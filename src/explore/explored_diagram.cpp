@@ -106,9 +106,9 @@ std::string branch_json(const ExploredBranch& branch) {
                        json(label.remark), json(label.curve));
   });
   return fmt::format(
-      R"({{"name": {}, "parent": {}, "origin": {}, "from": {}, "to": {}, "signatures": {}, "ends": {}, "labels": {}, "commands": {}}})",
-      json(branch.name), json(branch.parent), json(branch.origin), json(branch.from), json(branch.to),
-      json_list(branch.signatures),
+      R"({{"name": {}, "parent": {}, "origin": {}, "mirror_of": {}, "from": {}, "to": {}, "signatures": {}, "ends": {}, "labels": {}, "commands": {}}})",
+      json(branch.name), json(branch.parent), json(branch.origin), json(branch.mirror_of), json(branch.from),
+      json(branch.to), json_list(branch.signatures),
       json_list(branch.ends,
                 [](const RecordedEnd& end) {
                   return fmt::format(R"({{"reason": {}, "text": {}}})", json(end.reason), json(end.text));

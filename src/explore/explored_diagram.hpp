@@ -40,9 +40,10 @@ struct ExploredLabel {
 };
 
 struct ExploredBranch {
-  std::string name;    ///< of its files in the folder
-  std::string parent;  ///< "" for an attractor
-  std::string origin;  ///< "attractor 2 at alpha = 3.05", "PD 4"
+  std::string name;            ///< of its files in the folder
+  std::string parent;          ///< "" for an attractor
+  std::string origin;          ///< "attractor 2 at alpha = 3.05", "PD 4"
+  std::string mirror_of = {};  ///< a branch whose orbits, reflected, are those of this one; "" where none is known
   int doublings = 0;
   bool has_returns = false;     ///< one impact in several returns to grazing, or from such a branch
   double from = 0.0, to = 0.0;  ///< range of the parameter

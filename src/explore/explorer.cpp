@@ -1,6 +1,7 @@
 #include "explore/explorer.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -121,8 +122,22 @@ class Explorer {
 
   bool sweep() {
     if (!add_sweep(commands_.sweep())) return false;
-    const std::vector<std::string> states = sweeps_.front().samples.further_starts(request_.starts);
+    const std::vector<std::string> states = sweeps_.front().samples.further_starts(
+        request_.starts, [this](const Eigen::VectorXd& state) { return !is_behind_wall(state); });
     return states.empty() || add_sweep(commands_.sweep_from(states));
+  }
+
+  /// Is an event with an impact negative there, in the mode that a simulation begins in?
+  bool is_behind_wall(const Eigen::VectorXd& x) const {
+    const HybridSystem& system = loaded_.library->system();
+    const SimulationRequest request = simulation_request(request_);
+    const ParameterVector par = parameters();
+    const HybridSimulation simulation(simulation_rule(request, loaded_.constants, system, x, par), x, par,
+                                      simulation_settings(request, interrupted_));
+    const std::vector<IndexVector>& watched = simulation.mode().index_vectors;
+    return std::any_of(watched.begin(), watched.end(), [&](const IndexVector& index) {
+      return system.event(index.event, x.data(), par.data()) < 0.0 && reverses_flow(system, index, x, par);
+    });
   }
 
   bool add_sweep(const CommandJob& job) {
@@ -287,6 +302,45 @@ class Explorer {
     return one;
   }
 
+  /// Has a direction ended by the number of its points, on its way through the range? Families of orbits at one value,
+  /// and branches that wind to a homoclinic orbit, do not get on.
+  bool is_cut_off(const RunRecord& record, const PointFile& points) const {
+    constexpr double some_way = 0.02;
+    const double width = commands_.range().to - commands_.range().from;
+    if (record.ends.size() != points.sections.size()) return false;
+    for (std::size_t k = 0; k < record.ends.size(); ++k) {
+      if (record.ends[k].reason != "points") continue;
+      const std::vector<PointRow>& rows = points.sections[k].rows;
+      double low = rows.back().values.front(), high = low;
+      for (std::size_t row = rows.size() / 2; row < rows.size(); ++row) {
+        low = std::min(low, rows[row].values.front());
+        high = std::max(high, rows[row].values.front());
+      }
+      if (high - low >= some_way * width) return true;
+    }
+    return false;
+  }
+
+  /// A run with more points in the place of one that was cut off.
+  bool take_longer(BranchCandidate candidate, const CommandJob& job, std::vector<BranchCandidate>& next) {
+    candidate.branch.name = next_name();
+    candidate.branch.job = job;
+    return take(candidate, runner_.run({job}).front(), next);
+  }
+
+  /// Says where its orbits are those of a known branch, reflected.
+  void name_mirror(const std::vector<CataloguedSection>& sections, ExploredBranch& branch) {
+    const BranchRecognition recognition(catalogue_, commands_, loaded_.library->system(), runner_);
+    for (const CataloguedSection& section : sections) {
+      const std::optional<MirroredBranch> mirror = recognition.mirror_of(section);
+      if (!mirror) continue;
+      branch.mirror_of = mirror->name;
+      branch.origin += fmt::format("; {} in the mirror: {} change{} sign", mirror->name,
+                                   fmt::join(mirror->states, ", "), mirror->states.size() > 1 ? "" : "s");
+      return;
+    }
+  }
+
   /// Keeps a branch that is new, and adds what begins at its labels to the next round.
   bool take(const BranchCandidate& candidate, const JobResult& result, std::vector<BranchCandidate>& next) {
     ExploredBranch branch = candidate.branch;
@@ -299,6 +353,9 @@ class Explorer {
     const RunRecord record = run_record(commands_.file('d', branch.name));
     if (candidate.returns > 1 && record.only_at_start) return false;
     const PointFile points = read_point_file(commands_.file('p', branch.name));
+    if (is_cut_off(record, points))
+      if (const auto longer = commands_.longer(fmt::format("b{}", named_ + 1), branch.job))
+        return take_longer(candidate, *longer, next);
     std::vector<CataloguedSection> sections = catalogued_sections(branch.name, points, commands_.monitors());
     const std::optional<std::vector<KnownBranch>> found =
         known_branches(sections, is_switch_in_both_directions(candidate));
@@ -317,6 +374,7 @@ class Explorer {
       const JobResult alone = runner_.run({one->branch.job}).front();
       if (!alone.was_run || alone.succeeded()) return take(*one, alone, next);
     }
+    name_mirror(sections, branch);
     for (CataloguedSection& section : sections) catalogue_.add(std::move(section));
     describe_points(points, commands_.range(), branch);
     branch.ends = record.ends;
@@ -431,9 +489,11 @@ class Explorer {
 
   void plan_pictures(const ExploredCurves& curves) {
     const std::string& folder = commands_.folder();
+    std::vector<std::string> sweeps;
+    for (const CommandJob& job : diagram_.first_jobs) sweeps.push_back(job.outputs.front());
     if (!sweeps_.empty())
-      add_pictures({folder, commands_.path("sweep.sweep"), commands_.monitors(), request_.quantity},
-                   sweeps_.front().samples.table(), diagram_);
+      add_pictures({folder, sweeps, commands_.monitors(), request_.quantity}, sweeps_.front().samples.table(),
+                   diagram_);
     std::vector<std::string> files;
     for (const ExploredCurve& curve : curves.curves) files.push_back(curve.job.outputs.front());
     add_curve_picture(folder, files, curves.second, diagram_);

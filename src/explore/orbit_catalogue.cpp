@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "base/levels.hpp"
@@ -67,13 +68,16 @@ std::vector<Index> rows_compared(const CataloguedSection& section) {
   return rows;
 }
 
-/// As far as the monitors are known. Where a largest value moves from one maximum to another, interpolation is coarse.
-bool about_agree(const InterpolatedPoint& orbit, const std::vector<double>& monitors) {
-  constexpr double coarse = 1e-2;
+/// Shares of the largest monitor. Where a largest value moves from one maximum to another, interpolation is coarse; an
+/// orbit that is cut by other events has to agree better.
+constexpr double coarse = 1e-2, fine = level::five_digits;
+
+/// As far as the monitors are known.
+bool about_agree(const InterpolatedPoint& orbit, const std::vector<double>& monitors, double share) {
   const double size = orbit.numbers.tail(orbit.numbers.size() - 1).cwiseAbs().maxCoeff();
   for (std::size_t k = 0; k < monitors.size(); ++k) {
     const auto row = static_cast<Index>(k + 1);  // behind the period
-    if (std::isfinite(monitors[k]) && std::abs(orbit.numbers(row) - monitors[k]) > coarse * size) return false;
+    if (std::isfinite(monitors[k]) && std::abs(orbit.numbers(row) - monitors[k]) > share * size) return false;
   }
   return true;
 }
@@ -170,7 +174,7 @@ std::vector<BranchPlace> OrbitCatalogue::places_near(const std::string& branch, 
   std::vector<BranchPlace> places;
   const double parameter = like.parameter[static_cast<std::size_t>(row)];
   for (const CataloguedSection& known : sections_) {
-    if (known.branch != branch || known.rests != like.rests || known.signature.word != like.signature.word) continue;
+    if (known.branch != branch || known.rests != like.rests) continue;
     for (Index i = 0; i + 1 < std::ssize(known.parameter); ++i) {
       if (!passes(known, i, parameter)) continue;
       const InterpolatedPoint orbit = interpolate(known.parameter, known.numbers, i, parameter);
@@ -181,11 +185,11 @@ std::vector<BranchPlace> OrbitCatalogue::places_near(const std::string& branch, 
   return places;
 }
 
-std::string OrbitCatalogue::branch_with_state(double parameter, const VectorXd& state) const {
+std::string OrbitCatalogue::branch_with_state(double parameter, const VectorXd& state, double size) const {
   for (const CataloguedSection& known : sections_) {
     if (!known.rests) continue;
     for (const InterpolatedPoint& one : orbits_at(known, parameter))
-      if (agrees(one, state)) return known.branch;
+      if (agrees(one, state, size)) return known.branch;
   }
   return "";
 }
@@ -209,13 +213,14 @@ std::vector<std::string> OrbitCatalogue::branches_with(const SignatureWord& sign
   const PrimitiveWord wanted = primitive_word(signature);
   std::vector<std::string> branches;
   for (const CataloguedSection& known : sections_) {
-    if (known.rests || known.signature.word != wanted.word) continue;
+    if (known.rests) continue;
+    const bool is_cut_alike = known.signature.word == wanted.word;
     const std::vector<InterpolatedPoint> orbits = orbits_at(known, parameter);
     const bool has_one = std::any_of(orbits.begin(), orbits.end(), [&](const InterpolatedPoint& orbit) {
       const double time = orbit.numbers(0) * known.signature.repetitions;
       const double tolerance =
           2.0 * orbit.uncertainty(0) * known.signature.repetitions + level::five_digits * std::abs(period);
-      return std::abs(time - period) <= tolerance && about_agree(orbit, monitors);
+      return std::abs(time - period) <= tolerance && about_agree(orbit, monitors, is_cut_alike ? coarse : fine);
     });
     if (has_one && std::find(branches.begin(), branches.end(), known.branch) == branches.end())
       branches.push_back(known.branch);
@@ -276,8 +281,8 @@ InterpolatedPoint interpolate(const std::vector<double>& coordinate, const Eigen
   return {best, (best - other).cwiseAbs()};
 }
 
-bool agrees(const InterpolatedPoint& point, const VectorXd& numbers) {
-  const double size = numbers.cwiseAbs().maxCoeff();
+bool agrees(const InterpolatedPoint& point, const VectorXd& numbers, double size) {
+  size = std::max(size, numbers.cwiseAbs().maxCoeff());
   for (Index k = 0; k < numbers.size(); ++k)
     if (!(std::abs(point.numbers(k) - numbers(k)) <= 2.0 * point.uncertainty(k) + least_uncertainty * size))
       return false;
@@ -290,7 +295,7 @@ using Eigen::MatrixXd;
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
 constexpr double least_size = 1e-3;  // of a state, as a share of the largest
-constexpr Index points_compared = 12;
+constexpr Index points_compared = 12, points_of_piece = 4;
 constexpr Index nodes_beside = 2;  // on each side of the nearest one
 constexpr int halvings = 40;
 
@@ -340,61 +345,134 @@ double distance_of_ends(const ComparedOrbit& a, const ComparedOrbit& b, const st
   return least;
 }
 
-/// The state at tau of the polynomial through some nodes of the orbit.
-VectorXd state_at(const LabelledSolution& orbit, Index first, Index last, double tau) {
-  VectorXd state = VectorXd::Zero(orbit.states.rows());
-  const auto at = [&](Index k) { return orbit.tau[static_cast<std::size_t>(k)]; };
+/// The nodes of one segment, and where they are on it.
+struct Piece {
+  MatrixXd nodes;  ///< n x as many as `tau`
+  const std::vector<double>& tau;
+};
+
+/// Those segments that last.
+std::vector<Piece> pieces_of(const LabelledSolution& orbit) {
+  std::vector<Piece> pieces;
+  const Index n = orbit.dimension;
+  for (Index row = 0; row < orbit.states.rows(); row += n)
+    if (const MatrixXd nodes = orbit.states.middleRows(row, n); (nodes.colwise() - nodes.col(0)).any())
+      pieces.push_back({nodes, orbit.tau});
+  return pieces;
+}
+
+/// The state at tau of the polynomial through some nodes.
+VectorXd state_at(const Piece& piece, Index first, Index last, double tau) {
+  VectorXd state = VectorXd::Zero(piece.nodes.rows());
+  const auto at = [&](Index k) { return piece.tau[static_cast<std::size_t>(k)]; };
   for (Index k = first; k <= last; ++k) {
     double weight = 1.0;
     for (Index l = first; l <= last; ++l)
       if (l != k) weight *= (tau - at(l)) / (at(k) - at(l));
-    state += weight * orbit.states.col(k);
+    state += weight * piece.nodes.col(k);
   }
   return state;
 }
 
-double distance_from_curve(const VectorXd& state, const LabelledSolution& orbit, const VectorXd& weight) {
-  const Index nodes = orbit.states.cols();
+double distance_from_piece(const VectorXd& state, const Piece& piece, const VectorXd& weight) {
+  const Index nodes = piece.nodes.cols();
   Index nearest = 0;
   const auto size = [&](const VectorXd& other) { return (state - other).cwiseProduct(weight).squaredNorm(); };
   for (Index k = 1; k < nodes; ++k)
-    if (size(orbit.states.col(k)) < size(orbit.states.col(nearest))) nearest = k;
+    if (size(piece.nodes.col(k)) < size(piece.nodes.col(nearest))) nearest = k;
   const Index first = std::max<Index>(0, nearest - nodes_beside);
   const Index last = std::min<Index>(nodes - 1, nearest + nodes_beside);
-  double low = orbit.tau[static_cast<std::size_t>(std::max<Index>(0, nearest - 1))];
-  double high = orbit.tau[static_cast<std::size_t>(std::min<Index>(nodes - 1, nearest + 1))];
+  const auto value = [&](double tau) { return size(state_at(piece, first, last, tau)); };
+  double low = piece.tau[static_cast<std::size_t>(std::max<Index>(0, nearest - 1))];
+  double high = piece.tau[static_cast<std::size_t>(std::min<Index>(nodes - 1, nearest + 1))];
   for (int k = 0; k < halvings; ++k) {
     const double a = low + (high - low) / 3.0, b = high - (high - low) / 3.0;
-    (size(state_at(orbit, first, last, a)) < size(state_at(orbit, first, last, b)) ? high : low) =
-        size(state_at(orbit, first, last, a)) < size(state_at(orbit, first, last, b)) ? b : a;
+    (value(a) < value(b) ? high : low) = value(a) < value(b) ? b : a;
   }
-  return distance(state, state_at(orbit, first, last, 0.5 * (low + high)), weight);
+  return distance(state, state_at(piece, first, last, 0.5 * (low + high)), weight);
 }
 
-double distance_of_curves(const LabelledSolution& a, const LabelledSolution& b, const std::vector<Index>& drifting) {
-  if (std::ssize(b.tau) != b.states.cols()) return unknown;
-  const VectorXd weight = weights(a.states, drifting);
+/// The largest distance of points of the one, which has been reflected, from the other.
+double distance_beyond(const std::vector<Piece>& one, const VectorXd& signs, const std::vector<Piece>& other,
+                       const VectorXd& weight) {
+  if (one.empty() || other.empty()) return unknown;
+  const Index points = std::max<Index>(points_of_piece, points_compared / std::ssize(one));
   double largest = 0.0;
-  for (Index k = 0; k < points_compared; ++k)
-    largest =
-        std::max(largest, distance_from_curve(a.states.col(k * (a.states.cols() - 1) / points_compared), b, weight));
+  for (const Piece& piece : one)
+    for (Index k = 0; k < points && largest < unknown; ++k) {
+      const VectorXd state = signs.cwiseProduct(piece.nodes.col(k * (piece.nodes.cols() - 1) / points));
+      double least = unknown;
+      for (const Piece& target : other) least = std::min(least, distance_from_piece(state, target, weight));
+      largest = std::max(largest, least);
+    }
   return largest;
+}
+
+/// However they are cut.
+double distance_of_curves(const LabelledSolution& a, const VectorXd& signs, const LabelledSolution& b,
+                          const std::vector<Index>& drifting) {
+  if (std::ssize(a.tau) != a.states.cols() || std::ssize(b.tau) != b.states.cols()) return unknown;
+  const VectorXd weight = weights(states_of(a), drifting);
+  const std::vector<Piece> of_a = pieces_of(a), of_b = pieces_of(b);
+  return std::max(distance_beyond(of_a, signs, of_b, weight), distance_beyond(of_b, signs, of_a, weight));
+}
+
+}  // namespace
+
+namespace {
+
+/// Why two solutions cannot be compared as periodic orbits: false.
+bool are_orbits(const LabelledSolution& x, const LabelledSolution& y) {
+  const int n = x.dimension;
+  if (x.problem_type != y.problem_type || n != y.dimension || n < 1) return false;
+  if (x.states.size() == 0 || y.states.size() == 0 || x.states.rows() % n != 0 || y.states.rows() % n != 0)
+    return false;
+  const FamilyFacts& facts = family_of(x.problem_type).facts();
+  return !facts.headings.has_period ||
+         (!keeps_contact(x.problem_type) && facts.has_return_map && !facts.has_several_returns);
 }
 
 }  // namespace
 
 double orbit_distance(const ComparedOrbit& a, const ComparedOrbit& b, const std::vector<Index>& drifting) {
   const LabelledSolution &x = *a.solution, &y = *b.solution;
-  const int n = x.dimension;
-  if (x.problem_type != y.problem_type || n != y.dimension || n < 1) return unknown;
-  if (x.states.size() == 0 || y.states.size() == 0 || x.states.rows() % n != 0 || y.states.rows() % n != 0)
-    return unknown;
-  const FamilyFacts& facts = family_of(x.problem_type).facts();
-  if (!facts.headings.has_period)
+  if (!are_orbits(x, y)) return unknown;
+  if (!family_of(x.problem_type).facts().headings.has_period)
     return distance(x.states.col(0), y.states.col(0), weights(x.states.leftCols(1), drifting));
-  if (keeps_contact(x.problem_type) || !facts.has_return_map || facts.has_several_returns) return unknown;
-  if (!is_smooth(a.signature)) return distance_of_ends(a, b, drifting);
-  return is_smooth(b.signature) ? distance_of_curves(x, y, drifting) : unknown;
+  const bool are_cut_alike = primitive_word(a.signature).word == primitive_word(b.signature).word;
+  if (are_cut_alike && !is_smooth(a.signature)) return distance_of_ends(a, b, drifting);
+  return distance_of_curves(x, VectorXd::Ones(x.dimension), y, drifting);
+}
+
+/// A state whose range is that of the other orbit keeps its sign, one whose range is the other's with the sign changed
+/// changes it; where both hold, either is tried.
+std::optional<std::vector<bool>> reflection(const LabelledSolution& a, const LabelledSolution& b,
+                                            const std::vector<Index>& drifting, double tolerance) {
+  if (!are_orbits(a, b) || !family_of(a.problem_type).facts().headings.has_period) return std::nullopt;
+  const MatrixXd x = states_of(a), y = states_of(b);
+  const VectorXd weight = weights(x, drifting);
+  constexpr double coarse = 0.02;  // nodes lie elsewhere
+  std::vector<Index> open;
+  VectorXd signs = VectorXd::Ones(a.dimension);
+  for (Index k = 0; k < a.dimension; ++k) {
+    const double low = x.row(k).minCoeff(), high = x.row(k).maxCoeff();
+    const double of_low = y.row(k).minCoeff(), of_high = y.row(k).maxCoeff();
+    const bool keeps = std::max(std::abs(low - of_low), std::abs(high - of_high)) * weight(k) <= coarse;
+    const bool changes = std::max(std::abs(low + of_high), std::abs(high + of_low)) * weight(k) <= coarse;
+    if (!keeps && !changes) return std::nullopt;
+    if (!keeps) signs(k) = -1.0;
+    if (keeps && changes && weight(k) > 0.0) open.push_back(k);
+  }
+  constexpr std::size_t most_open = 8;
+  if (open.size() > most_open) return std::nullopt;
+  for (unsigned choice = 0; choice < (1U << open.size()); ++choice) {
+    for (std::size_t k = 0; k < open.size(); ++k) signs(open[k]) = (choice >> k) & 1U ? -1.0 : 1.0;
+    if (signs.minCoeff() > 0.0 || distance_of_curves(a, signs, b, drifting) > tolerance) continue;
+    std::vector<bool> result;
+    for (const double sign : signs) result.push_back(sign < 0.0);
+    return result;
+  }
+  return std::nullopt;
 }
 
 }  // namespace tchat

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -71,8 +72,8 @@ class OrbitCatalogue {
   /// (NaN: not known), each once.
   std::vector<std::string> branches_with(const SignatureWord& signature, double parameter, double period,
                                          const std::vector<double>& monitors) const;
-  /// The branch with this equilibrium.
-  std::string branch_with_state(double parameter, const Eigen::VectorXd& state) const;
+  /// The branch with this equilibrium. `size`: of states.
+  std::string branch_with_state(double parameter, const Eigen::VectorXd& state, double size) const;
 
  private:
   std::vector<std::string> branches_at(const CataloguedSection& like, double parameter,
@@ -93,23 +94,29 @@ struct InterpolatedPoint {
 InterpolatedPoint interpolate(const std::vector<double>& coordinate, const Eigen::MatrixXd& numbers, Eigen::Index i,
                               double at);
 
-/// Are these the numbers of the point, up to its uncertainty and the errors of runs?
-bool agrees(const InterpolatedPoint& point, const Eigen::VectorXd& numbers);
+/// Are these the numbers of the point, up to its uncertainty and the errors of runs? `size`: of numbers that matter.
+bool agrees(const InterpolatedPoint& point, const Eigen::VectorXd& numbers, double size = 0.0);
 
 // Are two labelled solutions at one parameter value the same orbit?
 //
-// Orbits cut by events are compared by their states where segments end, before the jumps: the same when these agree
-// for some rotation of the signature, compared until both orbits are back at their start. A smooth orbit has no such
-// states; points of one are compared with the nearest ones on the curve of the other. An equilibrium has one state.
+// Orbits cut by the same events are compared by their states where segments end, before the jumps: the same when these
+// agree for some rotation of the signature, compared until both orbits are back at their start. Of others, and of
+// smooth orbits, points of each are compared with the nearest ones on the curve of the other. An equilibrium has one
+// state.
 
 struct ComparedOrbit {
   const LabelledSolution* solution = nullptr;
   SignatureWord signature;  ///< with its repetitions
 };
 
-/// Largest difference of two orbits of one primitive signature, as a share of the size of each state (its largest
+/// Largest difference of two orbits, as a share of the size of each state (its largest
 /// modulus on `a`, at least 1e-3 of that of all). States from 0 that are in `drifting`, which nothing depends on, are
-/// left out. Infinite where they cannot be compared: tori, other signatures, other numbers of states.
+/// left out. Infinite where they cannot be compared: tori, other numbers of states.
 double orbit_distance(const ComparedOrbit& a, const ComparedOrbit& b, const std::vector<Eigen::Index>& drifting);
+
+/// Which states change their signs in the reflection that makes one periodic orbit of the other, to within `tolerance`
+/// as above; nothing where there is none of that kind.
+std::optional<std::vector<bool>> reflection(const LabelledSolution& a, const LabelledSolution& b,
+                                            const std::vector<Eigen::Index>& drifting, double tolerance);
 
 }  // namespace tchat

@@ -130,6 +130,49 @@ TEST_CASE("mirror images of equal periods, means and largest values are two bran
       explored(workspace, std::string(SYSTEMS) + "/mirrored.tch", "mirrored --over p=0.8:1.2:5" + starts);
   INFO(tree);
   CHECK(tree.find("2 branches.") != std::string::npos);
+  CHECK(tree.find("; b1 in the mirror: y1, y2 change sign\n") != std::string::npos);
+}
+
+TEST_CASE("an orbit that other events cut is no other branch") {
+  // Beyond the grazing point the orbit without impacts is reached again through the minimum, not the maximum.
+  const Workspace workspace;
+  workspace.write("sections.tch",
+                  "par alpha=2.5, omega=2.0072, zeta=0.05, r=0.8\ninit y2=1\ngrowth = 1 - y1^2 - y2^2\nx' = v\n"
+                  "v' = alpha*y2 - 2*zeta*v - x\ny1' = growth*y1 + omega*y2\ny2' = growth*y2 - omega*y1\n"
+                  "event wall = 1 - x\nevent maximum = v\nevent minimum = -v\njump impact: v -> -r*v\n"
+                  "after any: wall -> impact, maximum -> identity, minimum -> identity\n");
+  const std::string tree = explored(workspace, "", "sections --over alpha=2.5:3.5:11 --doublings 1 --starts 0");
+  INFO(tree);
+  CHECK(tree.find("GR 4 at 3.035495345 -> b1") != std::string::npos);
+  CHECK(tree.find("4 branches.") != std::string::npos);
+}
+
+TEST_CASE("what comes to rest is no periodic orbit, however small it turns") {
+  const Workspace workspace;
+  workspace.write("well.tch",
+                  "par a=1\ninit x=0.1\nx' = v\nv' = a*x - x^3 - 0.2*v\nevent top = v\nevent wall = 3 - x\n"
+                  "jump hit: v -> -0.8*v\nafter any: top -> identity, wall -> hit\n");
+  const std::string tree = explored(workspace, "", "well --over a=0.5:2:11 --starts 4");
+  CHECK(tree.find("2 branches. Coverage: 66 of 66 equilibria of the sweep") != std::string::npos);
+  // At the bottom but for rounding: f = 0 to the last digit, and integration has nothing to resolve.
+  const Outcome rest = workspace.tchat("simulate well --state 0.7071067797565609,3.2266068485765065e-10 PAR(a)=0.5");
+  INFO(rest.text());
+  CHECK(rest.status == 0);
+  CHECK(rest.out.find("converges to the equilibrium x = (0.707107, ") != std::string::npos);
+}
+
+TEST_CASE("a motion that escapes does not widen the box of further starts") {
+  const Workspace workspace;
+  workspace.write("well.tch", "par p=1\ninit x=0.5\nx' = -p*x + x^3\ny' = -y\n");
+  const Outcome outcome =
+      workspace.tchat("explore well --over p=1:2:5 --state 0.5,0.1 --state 1.6,0.1 --starts 5 -o d -q");
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  const std::string starts = workspace.read("d/starts.sweep");
+  std::size_t count = 0;
+  for (std::size_t at = starts.find(": x = ("); at != std::string::npos; at = starts.find(": x = (", at + 1), ++count)
+    CHECK(std::stod(starts.substr(at + 7)) <= 1.6);
+  CHECK(count == 5);
 }
 
 TEST_CASE("budgets leave switches, which are counted") {

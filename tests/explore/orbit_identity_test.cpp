@@ -54,8 +54,37 @@ TEST_CASE("an orbit is the same wherever its signature begins, and no orbit of t
   const MatrixXd rotated{{2.0, 1.0}, {-3.0, 0.5}};
   CHECK(distance(cut_orbit(ends), impact_first, cut_orbit(ends), impact_first) == 0.0);
   CHECK(distance(cut_orbit(ends), impact_first, cut_orbit(rotated), impact_last) == 0.0);
-  CHECK(distance(cut_orbit(ends), impact_first, cut_orbit(ends), twice) == INFINITY);
   CHECK(distance(cut_orbit(ends), impact_first, cut_orbit(rotated), impact_first) > 0.1);
+}
+
+TEST_CASE("a curve is the same orbit whatever events cut it, and another one where its points lie elsewhere") {
+  const LabelledSolution orbit = ellipse(2.0, 1.0, 0.0);
+  LabelledSolution halves = orbit;  // two segments, each with every other node
+  halves.tau.clear();
+  halves.states.resize(4, 41);
+  for (int k = 0; k <= 40; ++k) {
+    halves.tau.push_back(k / 40.0);
+    halves.states.col(k) << orbit.states.col(k), orbit.states.col(k + 40);
+  }
+  CHECK(distance(orbit, clock, halves, impact_first) < 1e-5);
+  CHECK(distance(halves, impact_first, orbit, clock) < 1e-5);
+  CHECK(distance(ellipse(2.001, 1.0, 0.3), clock, halves, impact_first) > 1e-4);
+  // Half of a curve lies on all of it.
+  LabelledSolution half = halves;
+  half.states.bottomRows(2) = half.states.topRows(2).eval();
+  CHECK(distance(half, impact_first, orbit, clock) > 0.1);
+}
+
+TEST_CASE("a reflection that makes one orbit of the other, with the states that change their signs") {
+  const LabelledSolution orbit = ellipse(2.0, 1.0, 0.0, 3.0);
+  LabelledSolution other = orbit;
+  other.states.row(0) *= -1.0;
+  const auto found = reflection(orbit, other, {}, 1e-5);
+  REQUIRE(found.has_value());
+  CHECK((*found)[0]);
+  other.states.row(0).array() += 0.01;
+  CHECK_FALSE(reflection(orbit, other, {}, 1e-5).has_value());
+  CHECK_FALSE(reflection(orbit, ellipse(2.0, 1.1, 0.0, -3.0), {}, 1e-5).has_value());
 }
 
 TEST_CASE("an orbit that is run twice is the same, a doubled one is not") {
