@@ -102,17 +102,20 @@ PointsWithAngles with_angles(const HybridSystem& system, const Signature& one_re
 }
 
 Orbit orbits_from_curve(const HybridSystem& system, const Signature& one_return, const InvariantCurve& curve,
-                        const ParameterVector& par, int orbits, int intervals, int collocation) {
+                        const ParameterVector& par, const TorusMesh& mesh, double longest,
+                        const Eigen::VectorXd& sizes) {
   const auto m = static_cast<int>(one_return.size());
-  const OrbitShape shape{system.dimension(), orbits * m, intervals, collocation};
-  Orbit x{shape, uniform_mesh(intervals), Eigen::MatrixXd(shape.dimension, shape.columns()), par};
+  const OrbitShape shape{system.dimension(), mesh.orbits * m, mesh.intervals, mesh.collocation};
+  Orbit x{shape, uniform_mesh(mesh.intervals), Eigen::MatrixXd(shape.dimension, shape.columns()), par};
   x.par.rotation() = curve.rotation();
   FlowOptions options;
   options.set(level::relaxed_flow);
   options.surface_tolerance = level::same;  // the fitted curve is on the section to the accuracy of the fit
   options.variational = false;
-  for (int i = 0; i < orbits; ++i) {
-    Eigen::VectorXd state = curve.at(static_cast<double>(i) / orbits);
+  options.max_duration = 10.0 * longest;
+  options.sizes = sizes;
+  for (int i = 0; i < mesh.orbits; ++i) {
+    Eigen::VectorXd state = curve.at(static_cast<double>(i) / mesh.orbits);
     for (int s = 0; s < m; ++s) {
       const IndexVector& index = one_return[static_cast<std::size_t>(s)];
       const SegmentFlow whole = integrate_segment(system, index, state, par, options);
@@ -239,11 +242,13 @@ int simulate_torus(const SimulationRequest& request, const std::string& torus_na
   warnings << side_without_effect(simulation, request.side);
   for (const StartNotice& notice : start_notices(simulation)) warnings << notice_text(system, notice);
   std::vector<PassedSegment> motion;
+  double longest = 0.0;
   SimulationResult result;
   {
     ProgressLine line(progress);
     result = run_simulation(simulation, plan_of(request.plan, one_return.size()), [&](const SimulatedSegment& segment) {
       if (segment.ended_by == SegmentEnd::event) motion.push_back({segment.index, segment.start});
+      longest = std::max(longest, segment.duration);
       if (line.is_due()) line.show(fmt::format("{} events, t = {:.6g} ", segment.number, segment.end_time()));
     });
   }
@@ -261,8 +266,9 @@ int simulate_torus(const SimulationRequest& request, const std::string& torus_na
   const int most = (max_torus_segments / static_cast<int>(one_return.size()) - 1) / 2;
   const int harmonics = std::clamp(settings.harmonics > 0 ? settings.harmonics : fitted.curve.harmonics(),
                                    std::min(fewest_harmonics, most), most);
-  const Orbit orbit = orbits_from_curve(system, one_return, fitted.curve, start.par, 2 * harmonics + 1,
-                                        settings.mesh_intervals, settings.collocation_points);
+  const Orbit orbit = orbits_from_curve(system, one_return, fitted.curve, start.par,
+                                        {2 * harmonics + 1, settings.mesh_intervals, settings.collocation_points},
+                                        longest, simulation.sizes());
   if (!constants.is_given()) complete_segments(settings, system, orbit);
   LabelledSolution solution = labelled_solution(orbit, {}, {}, {});
   solution.type = static_cast<int>(PointType::end);

@@ -35,10 +35,16 @@ struct PointsWithAngles {
 PointsWithAngles with_angles(const HybridSystem& system, const Signature& one_return, Eigen::MatrixXd points,
                              const ParameterVector& par);
 
-/// `orbits` returns from equal phases of the curve, integrated, on a uniform mesh; PAR with rho and the durations.
-/// Throws ComputationError where one cannot be integrated.
+/// So many returns, and the uniform mesh of each segment.
+struct TorusMesh {
+  int orbits, intervals, collocation;
+};
+
+/// Returns from equal phases of the curve, integrated; PAR with rho and the durations. `longest`: no segment lasts
+/// longer; `sizes`: of the states. Throws ComputationError where one cannot be integrated.
 Orbit orbits_from_curve(const HybridSystem& system, const Signature& one_return, const InvariantCurve& curve,
-                        const ParameterVector& par, int orbits, int intervals, int collocation);
+                        const ParameterVector& par, const TorusMesh& mesh, double longest,
+                        const Eigen::VectorXd& sizes);
 
 // `tchat simulate --torus`: from the points in which a simulated motion begins its returns to the start of a run of
 // tori, a label in q.NAME2 and constants in gc.NAME2.

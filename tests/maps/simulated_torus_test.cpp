@@ -79,7 +79,8 @@ TEST_CASE("orbits from the fitted curve start at equal phases, last one return a
   ParameterVector par{ParameterLayout()};
   par(0) = omega;
   constexpr int orbits = 5;
-  const Orbit x = orbits_from_curve(system_of<Watched>(), one_return, fitted.curve, par, orbits, 8, 4);
+  const Orbit x = orbits_from_curve(system_of<Watched>(), one_return, fitted.curve, par, {orbits, 8, 4}, 1.0,
+                                    Eigen::VectorXd::Ones(3));
   REQUIRE(x.shape.segments == orbits);
   CHECK(x.par.rotation() == Approx(rho));
   for (int i = 0; i < orbits; ++i) {
