@@ -122,6 +122,7 @@ struct BranchSummary {
   int inadmissible_points = 0;
   int unstable_points = 0;
   int undetermined_points = 0;  ///< whose stability is not known
+  int neutral_points = 0;       ///< between bifurcations
   bool multipliers_computed = false;
   const FamilyFacts* family = nullptr;  ///< of the points
   bool critical_curve = false;          ///< every point has a critical multiplier, so stability says nothing

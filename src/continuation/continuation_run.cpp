@@ -483,6 +483,7 @@ void ContinuationRun::record(const SpecialPoint& special, const PointData& data)
     const Stability stability = data.multipliers.stability();
     summary_.unstable_points += stability == Stability::unstable;
     summary_.undetermined_points += stability == Stability::unknown;
+    summary_.neutral_points += !is_bifurcation(special.type) && data.multipliers.neutral();
   }
   summary_.has_structural = summary_.has_structural || !data.multipliers.is_flow_lost;
   if (!data.multipliers.is_flow_lost)

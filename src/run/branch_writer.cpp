@@ -401,12 +401,17 @@ std::string special_points(const std::vector<BranchWriter::Labelled>& labels, co
 }
 
 std::string stability_counts(const BranchSummary& summary) {
-  const int stable = summary.points - summary.unstable_points - summary.undetermined_points;
+  const int stable = summary.points - summary.unstable_points - summary.undetermined_points - summary.neutral_points;
   const char* qualified = summary.without_contact ? " but for the contact" : "";
-  if (summary.undetermined_points == 0)
-    return fmt::format(", {} stable and {} unstable{}", stable, summary.unstable_points, qualified);
-  return fmt::format(", {} stable, {} unstable{} and {} of unknown stability", stable, summary.unstable_points,
-                     qualified, summary.undetermined_points);
+  std::vector<std::string> parts{fmt::format("{} stable", stable),
+                                 fmt::format("{} unstable{}", summary.unstable_points, qualified)};
+  if (summary.neutral_points > 0)
+    parts.push_back(fmt::format("{} neutral (a multiplier of modulus 1)", summary.neutral_points));
+  if (summary.undetermined_points > 0)
+    parts.push_back(fmt::format("{} of unknown stability", summary.undetermined_points));
+  const std::string last = parts.back();
+  parts.pop_back();
+  return fmt::format(", {} and {}", fmt::join(parts, ", "), last);
 }
 
 }  // namespace

@@ -284,6 +284,7 @@ class Direction {
     after.inadmissible_points += before.inadmissible_points;
     after.unstable_points += before.unstable_points;
     after.undetermined_points += before.undetermined_points;
+    after.neutral_points += before.neutral_points;
     after.multipliers_computed = before.multipliers_computed;
     after.has_trivial = before.has_trivial;
     after.has_structural = before.has_structural || after.has_structural;

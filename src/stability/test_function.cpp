@@ -60,6 +60,14 @@ Stability FloquetMultipliers::stability() const {
   return undetermined > 0 || (is_doubtful && count.undecided > 0) ? Stability::unknown : Stability::stable;
 }
 
+bool FloquetMultipliers::neutral() const {
+  if (of_conserved > 0 || stability() != Stability::stable) return false;
+  const auto own = nontrivial();
+  const double accuracy = are_eigenvalues ? orbit_accuracy * largest_modulus(own) : multiplier_accuracy(*this);
+  return std::any_of(own.begin(), own.end(),
+                     [&](const Complex& mu) { return std::abs(stability_excess(*this, mu)) <= accuracy; });
+}
+
 double largest_modulus(std::span<const Complex> values) {
   double largest = 0.0;
   for (const Complex& value : values) largest = std::max(largest, std::abs(value));

@@ -68,6 +68,9 @@ struct FloquetMultipliers {
   bool stable() const;
   /// stable() where all are known, and none so near to the unit circle that its uncertainty decides.
   Stability stability() const;
+  /// stable(), but a multiplier has the modulus 1 to its accuracy, and no symmetry or conserved function says why:
+  /// neighbours neither approach nor leave to first order.
+  bool neutral() const;
   int stable_count() const;
 };
 

@@ -172,3 +172,14 @@ TEST_CASE("an equilibrium is not refined to an orbit") {
   CHECK(outcome.status == 1);
   CHECK(contains(outcome.out, "finds no periodic orbit: shooting went to an equilibrium"));
 }
+
+TEST_CASE("a multiplier on the unit circle all along is neither stable nor unstable") {
+  const Workspace workspace;
+  workspace.write("rotation.tch",
+                  "par th=1\nu' = 0\nv' = 0\nt' = 1\nevent tick = 1 - t\n"
+                  "jump step: u -> cos(th)*u - sin(th)*v, v -> sin(th)*u + cos(th)*v, t -> 0\nafter any: tick -> step\n");
+  REQUIRE(workspace.tchat("simulate rotation --dat s").status == 0);
+  const Outcome run = workspace.tchat("run rotation -c s -d s -o b NMX=6 DS=0.05");
+  INFO(run.text());
+  CHECK(run.out.find("6 points, 0 stable, 0 unstable and 6 neutral (a multiplier of modulus 1)") != std::string::npos);
+}
