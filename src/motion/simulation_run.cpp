@@ -260,6 +260,18 @@ void count_marks(const SimulatedSegment& segment, SimulationResult& result) {
   result.simultaneous += segment.simultaneous.empty() ? 0 : 1;
 }
 
+void count_missed(const HybridSimulation& simulation, const SimulatedSegment& segment, SimulationResult& result) {
+  const double* const par = simulation.parameters().data();
+  for (const int event : segment.mode.terminal_events()) {
+    if (event == segment.index.event) continue;
+    if (simulation.system().event(event, segment.start.data(), par) >= 0.0 ||
+        simulation.system().event(event, segment.end.data(), par) >= 0.0)
+      continue;
+    MissedEvent& missed = result.missed[event];
+    if (missed.count++ == 0) missed.first = segment.number;
+  }
+}
+
 }  // namespace
 
 SimulationResult run_simulation(HybridSimulation& simulation, const SimulationPlan& plan,
@@ -279,6 +291,7 @@ SimulationResult run_simulation(HybridSimulation& simulation, const SimulationPl
     if (!is_transient) {
       kept(result.last);
       count_marks(result.last, result);
+      count_missed(simulation, result.last, result);
     }
     if (result.last.ended_by != SegmentEnd::event) break;
     ++result.events;

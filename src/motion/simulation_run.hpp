@@ -164,12 +164,19 @@ struct SimulationPlan {
   double recognition = level::located;  ///< states that are equal, relative to the range of the orbit
 };
 
+/// Segments at whose begin and end a watched event was negative: it can be met only after it has been positive.
+struct MissedEvent {
+  long first = 0;  ///< number of the first of these segments
+  long count = 0;
+};
+
 struct SimulationResult {
   long events = 0;   ///< segments that ended in an event, transient included
   long dropped = 0;  ///< of those in the transient
   long contacts = 0, violations = 0, beyond = 0, simultaneous = 0;  ///< after the transient
   SimulatedSegment last;                                            ///< the last segment, whatever ended it
   std::optional<SimulatedSegment> first_violation;                  ///< with its marks
+  std::map<int, MissedEvent> missed;                                ///< by event, after the transient
   /// The segments of one period, in order, and the states that nothing depends on, from 0: of whoever has looked for
   /// them (motion/attractor_search.hpp).
   std::vector<SimulatedSegment> turn;

@@ -327,6 +327,23 @@ std::string nothing_recorded_text(const SimulationPlan& plan) {
                      counted(long{plan.max_period}, "event"));
 }
 
+namespace {
+
+/// Events that are watched in vain in nearly all segments, where the motion settles on nothing.
+std::string missed_text(const HybridSystem& system, const SimulationResult& result) {
+  constexpr double nearly_all = 0.9;
+  std::string text;
+  for (const auto& [event, missed] : result.missed)
+    if (static_cast<double>(missed.count) >= nearly_all * static_cast<double>(result.events - result.dropped))
+      text += fmt::format(
+          "{} is negative when segment {} begins and when it ends, and so in {} of {} segments: an event can be met "
+          "only\nafter its function has been positive. A jump, or another sign, may be missing.\n",
+          event_name(system, event), missed.first, missed.count, result.events - result.dropped);
+  return text;
+}
+
+}  // namespace
+
 std::string no_orbit_text(const HybridSystem& system, const SimulationResult& result, const SimulationPlan& plan,
                           const AttractorSearch& search) {
   if (result.accumulation || result.dies_out) return "";
@@ -340,7 +357,7 @@ std::string no_orbit_text(const HybridSystem& system, const SimulationResult& re
         return fmt::format("Undecided after {} events: {}. A longer simulation decides (--transient-events).\n",
                            result.events, search.doubt());
       if (const std::string why = search.unbounded(system); !why.empty())
-        return fmt::format("No attractor after {} events: {}.\n", result.events, why);
+        return fmt::format("No attractor after {} events: {}.\n", result.events, why) + missed_text(system, result);
       if (const std::optional<int> period = search.repeats_after())
         return fmt::format(
             "The last events repeat, within {:g} of the orbit's range, after {}, but Newton's method finds no "
@@ -349,11 +366,14 @@ std::string no_orbit_text(const HybridSystem& system, const SimulationResult& re
             "last period to the orbit nearest to it), or the motion may still drift (--transient-events).\n",
             plan.recognition, counted(long{*period}, "event"));
       return fmt::format(
-          "No periodic orbit recognised: the last events do not repeat, within {:g} of the orbit's range, after 1 to "
-          "{} events.\nIt may need longer (--transient-time, --events), have a longer period (--max-period), be "
-          "recognised with a\nlooser --recognition or a smaller --tolerance; or the motion is quasi-periodic (--torus) "
-          "or chaotic (--lyapunov tells).\n",
-          plan.recognition, plan.max_period);
+                 "No periodic orbit recognised: the last events do not repeat, within {:g} of the orbit's range, after "
+                 "1 to "
+                 "{} events.\nIt may need longer (--transient-time, --events), have a longer period (--max-period), be "
+                 "recognised with a\nlooser --recognition or a smaller --tolerance; or the motion is quasi-periodic "
+                 "(--torus) "
+                 "or chaotic (--lyapunov tells).\n",
+                 plan.recognition, plan.max_period) +
+             missed_text(system, result);
   }
 }
 

@@ -175,11 +175,26 @@ TEST_CASE("an equilibrium is not refined to an orbit") {
 
 TEST_CASE("a multiplier on the unit circle all along is neither stable nor unstable") {
   const Workspace workspace;
-  workspace.write("rotation.tch",
-                  "par th=1\nu' = 0\nv' = 0\nt' = 1\nevent tick = 1 - t\n"
-                  "jump step: u -> cos(th)*u - sin(th)*v, v -> sin(th)*u + cos(th)*v, t -> 0\nafter any: tick -> step\n");
+  workspace.write(
+      "rotation.tch",
+      "par th=1\nu' = 0\nv' = 0\nt' = 1\nevent tick = 1 - t\n"
+      "jump step: u -> cos(th)*u - sin(th)*v, v -> sin(th)*u + cos(th)*v, t -> 0\nafter any: tick -> step\n");
   REQUIRE(workspace.tchat("simulate rotation --dat s").status == 0);
   const Outcome run = workspace.tchat("run rotation -c s -d s -o b NMX=6 DS=0.05");
   INFO(run.text());
   CHECK(run.out.find("6 points, 0 stable, 0 unstable and 6 neutral (a multiplier of modulus 1)") != std::string::npos);
+}
+
+TEST_CASE("a watched event that is negative all along is said where the motion settles on nothing") {
+  const Workspace workspace;
+  const auto converter = [](const std::string& peak) {
+    return "par ref=2.5\ninit i=1, t=0\ni' = 1\nt' = 1\nevent peak = " + peak +
+           "\nevent tick = 1 - t\njump clock: t -> 0\njump off: i -> 0.3*i\n"
+           "after any: peak -> off, tick -> clock\n";
+  };
+  workspace.write("converter.tch", converter("0.5 - i"));  // the current begins above
+  CHECK(contains(workspace.succeed("simulate converter").out,
+                 "event 1 (peak) is negative when segment 1 begins and when it ends, and so in 10000 of 10000"));
+  workspace.write("converter.tch", converter("ref - i"));
+  CHECK_FALSE(contains(workspace.succeed("simulate converter").out, "is negative when"));
 }
