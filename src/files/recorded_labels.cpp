@@ -79,7 +79,8 @@ RecordedNames recorded_names(const std::string& solution_path) {
 void require_recorded_parameters(const std::string& solution_path, const HybridSystem& system) {
   const std::vector<std::string> recorded = recorded_names(solution_path).names.parameters;
   for (int k = 1; k <= std::min(system.parameters(), static_cast<int>(recorded.size())); ++k) {
-    const std::string unnamed = fmt::format("PAR({})", k), was = recorded[static_cast<std::size_t>(k - 1)];
+    const std::string unnamed = fmt::format("PAR({})", k);
+    const std::string& was = recorded[static_cast<std::size_t>(k - 1)];
     const std::string is = system.parameter_name(k);
     if (was == is || was == unnamed || is == unnamed) continue;
     throw UserError(fmt::format(

@@ -8,6 +8,7 @@
 #include "base/messages.hpp"
 #include "base/text_file.hpp"
 #include "base/words.hpp"
+#include "files/table_writer.hpp"
 #include "settings/constant_value.hpp"
 
 namespace tchat {
