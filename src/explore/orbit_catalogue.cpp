@@ -355,10 +355,18 @@ struct Piece {
 std::vector<Piece> pieces_of(const LabelledSolution& orbit) {
   std::vector<Piece> pieces;
   const Index n = orbit.dimension;
-  for (Index row = 0; row < orbit.states.rows(); row += n)
-    if (const MatrixXd nodes = orbit.states.middleRows(row, n); (nodes.colwise() - nodes.col(0)).any())
-      pieces.push_back({nodes, orbit.tau});
+  const VectorXd weight = weights(states_of(orbit), {});
+  for (Index row = 0; row < orbit.states.rows(); row += n) {
+    const MatrixXd nodes = orbit.states.middleRows(row, n);
+    const MatrixXd moved = weight.asDiagonal() * (nodes.colwise() - nodes.col(0));
+    if (moved.cwiseAbs().maxCoeff() > level::orbit) pieces.push_back({nodes, orbit.tau});
+  }
   return pieces;
+}
+
+/// Two events at one point leave a segment between them that takes no time; which two that is says nothing.
+bool has_instants(const LabelledSolution& orbit) {
+  return std::ssize(pieces_of(orbit)) * orbit.dimension < orbit.states.rows();
 }
 
 /// The state at tau of the polynomial through some nodes.
@@ -440,7 +448,8 @@ double orbit_distance(const ComparedOrbit& a, const ComparedOrbit& b, const std:
   if (!family_of(x.problem_type).facts().headings.has_period)
     return distance(x.states.col(0), y.states.col(0), weights(x.states.leftCols(1), drifting));
   const bool are_cut_alike = primitive_word(a.signature).word == primitive_word(b.signature).word;
-  if (are_cut_alike && !is_smooth(a.signature)) return distance_of_ends(a, b, drifting);
+  const bool are_instant = has_instants(x) || has_instants(y);
+  if (are_cut_alike && !is_smooth(a.signature) && !are_instant) return distance_of_ends(a, b, drifting);
   return distance_of_curves(x, VectorXd::Ones(x.dimension), y, drifting);
 }
 

@@ -147,6 +147,22 @@ TEST_CASE("an orbit that other events cut is no other branch") {
   CHECK(tree.find("4 branches.") != std::string::npos);
 }
 
+TEST_CASE("orbits with a segment of no time are one, wherever it lies") {
+  // Where y passes zero, top and bottom can both end a segment. UZ labels lie on every branch: no orbit is on two.
+  const Workspace workspace;
+  workspace.write("forced.tch",
+                  "par p=1, w=1\ninit x=1, y=0.1, z2=1\nx' = y\ny' = x - x^3 - 0.3*y + p*z1\n"
+                  "z1' = z1*(1 - z1^2 - z2^2) + w*z2\nz2' = z2*(1 - z1^2 - z2^2) - w*z1\n"
+                  "event top = y\nevent bottom = -y\nafter any: top -> identity, bottom -> identity\n");
+  const Outcome outcome = workspace.tchat({"explore", "forced", "--over", "p=0.1:0.5:11", "-o", "d", "-j", "2", "-q",
+                                           "--doublings", "0", "--branches", "12", "UZR={p:[0.3532,0.4108]}"});
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  const std::string tree = workspace.read("d.txt");
+  INFO(tree);
+  CHECK(std::stoi(tree.substr(tree.rfind('\n', tree.find(" branches. Coverage")) + 1)) <= 8);
+}
+
 TEST_CASE("what comes to rest is no periodic orbit, however small it turns") {
   const Workspace workspace;
   workspace.write("well.tch",
