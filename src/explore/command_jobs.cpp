@@ -39,7 +39,7 @@ std::string hash_of(const std::vector<std::string>& files) {
 /// What a job does and reads, and the program that does it.
 std::string work_text(const CommandJob& job) {
   static const std::string program = hash_of({"/proc/self/exe"});
-  std::string text = "tchat " + program + '\n';
+  std::string text = "program " + program + '\n';
   for (const Command& command : job.commands) text += shell_line(command) + '\n';
   return text + "reads " + hash_of(job.inputs) + ' ' + hash_of(job.given) + '\n';
 }
