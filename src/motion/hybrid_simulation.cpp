@@ -271,7 +271,10 @@ SimulatedSegment HybridSimulation::next(double end_time) {
   SimulatedSegment segment = begin_segment();
   if (segment.ended_by != SegmentEnd::event) return segment;
   if (sticks_at_start(segment)) return segment;
-  mark_walls_behind(segment);
+  for (const int event : walls_behind()) {
+    const Surface at = surface(mode_.field(), event, x_);
+    segment.marks.push_back({SegmentMark::Kind::beyond, event, time_, at.h, at.rate, x_});
+  }
   if (const std::vector<int> due = due_at_start(segment); !due.empty())
     end_by(segment, due);
   else
@@ -313,12 +316,12 @@ bool HybridSimulation::sticks_at_start(SimulatedSegment& segment) const {
   return true;
 }
 
-void HybridSimulation::mark_walls_behind(SimulatedSegment& segment) const {
-  for (const IndexVector& index : mode_.index_vectors) {
-    const Surface at = surface(index.field, index.event, x_);
-    if (at.h < 0.0 && !at.is_near && is_wall(index, x_))
-      segment.marks.push_back({SegmentMark::Kind::beyond, index.event, time_, at.h, at.rate, x_});
-  }
+std::vector<int> HybridSimulation::walls_behind() const {
+  std::vector<int> events;
+  for (const IndexVector& index : mode_.index_vectors)
+    if (const Surface at = surface(index.field, index.event, x_); at.h < 0.0 && !at.is_near && is_wall(index, x_))
+      events.push_back(index.event);
+  return events;
 }
 
 /// Events that happen at the very start: those of surface_starts() where the simulation begins; else they came together

@@ -211,6 +211,9 @@ class HybridSimulation {
   /// with.
   SimulatedSegment next(double end_time);
 
+  /// Events with an impact that are negative where the next segment begins: the state lies beyond a wall.
+  std::vector<int> walls_behind() const;
+
   const HybridSystem& system() const { return system_; }
   const Eigen::VectorXd& parameters() const { return par_; }
   double time() const { return time_; }
@@ -246,7 +249,6 @@ class HybridSimulation {
   SimulatedSegment begin_segment();
   std::vector<int> due_at_start(const SimulatedSegment& segment) const;
   bool sticks_at_start(SimulatedSegment& segment) const;
-  void mark_walls_behind(SimulatedSegment& segment) const;
   std::vector<int> watched_events() const;
   std::vector<int> events_begun_after() const;
   void integrate(SimulatedSegment& segment, double end_time);

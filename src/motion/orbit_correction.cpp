@@ -91,8 +91,8 @@ bool is_repeated(const OrbitCandidate& candidate, const SimulatedTurn& turn) {
   return false;
 }
 
-/// A motion that comes to rest has turns as small as one likes; Newton's method takes it to the equilibrium itself, or
-/// to rounding beside it, which moves no state by a share of its size that integration resolves.
+/// A motion that comes to rest turns in ever smaller circles. Newton's method converges to the equilibrium, or to
+/// rounding beside it, where no state moves by a share of its size that integration resolves.
 bool is_at_rest(const OrbitCandidate& candidate, const SimulatedTurn& turn) {
   VectorXd low = turn.segments.front().low, high = turn.segments.front().high;
   for (const SimulatedSegment& segment : turn.segments) {
