@@ -55,7 +55,6 @@ namespace {
 
 constexpr int computation_failed = 1;
 constexpr int bad_input = 2;
-constexpr int nothing_begins = 4;
 
 int report(const std::string& message, int status) {
   std::cout << std::flush;
@@ -69,7 +68,7 @@ int run_command(const std::function<int()>& command) {
   } catch (const UserError& error) {
     return report(error.what(), bad_input);
   } catch (const NothingBegins& error) {
-    return report(error.what(), nothing_begins);
+    return report(error.what(), nothing_begins_status);
   } catch (const ComputationError& error) {
     return report(error.what(), computation_failed);
   } catch (const std::bad_alloc&) {

@@ -29,7 +29,10 @@ class ComputationError : public std::runtime_error {
   explicit ComputationError(const std::string& message) : std::runtime_error(printable(message)) {}
 };
 
-/// What was to be followed does not exist there, as a curve that does not begin at a label; exit status 4.
+/// Exit status of a command at a label where what was asked for does not begin.
+inline constexpr int nothing_begins_status = 4;
+
+/// What was to be followed does not exist there, as a curve that does not begin at a label.
 class NothingBegins : public ComputationError {
  public:
   using ComputationError::ComputationError;

@@ -31,9 +31,6 @@ struct JobResult {
   bool succeeded() const { return was_run && status == 0; }
 };
 
-/// The exit status of a call at a label where what was asked for does not begin.
-inline constexpr int nothing_begins_status = 4;
-
 class JobRunner {
  public:
   /// At most `workers` jobs at a time, their stamps and logs in `folder`. No job is begun once `is_over` says so.

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "base/levels.hpp"
+#include "base/messages.hpp"
 #include "explore/run_record.hpp"
 #include "files/solution_file_reader.hpp"
 #include "plugin/problem_setup.hpp"

@@ -55,7 +55,6 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::string both_directions = "--both";
-constexpr int usual_points = 400;  // of a run
 
 /// "[1,2,3]"; "" for none.
 std::string all_events(int count) {
@@ -65,6 +64,7 @@ std::string all_events(int count) {
 }
 
 bool sets_step(const std::string& word) { return word.starts_with("DS="); }
+bool sets_points(const std::string& word) { return word.starts_with("NMX="); }
 
 /// The folder without slashes behind it.
 std::string folder_of(const ExploreRequest& request) {
@@ -227,42 +227,24 @@ CommandJob ExplorationCommands::switching(const std::string& name, const SwitchP
   return result;
 }
 
-CommandJob ExplorationCommands::renamed(const std::string& name, const CommandJob& job) const {
-  CommandJob result{name, job.commands, job.inputs, files_of(name), job.given};
-  for (Command& command : result.commands)
-    for (const char* const ending : {"", "_start", "_beside"})
-      std::replace(command.begin(), command.end(), path(job.name + ending), path(name + ending));
-  for (Command& command : result.commands)
-    std::replace(command.begin(), command.end(), file('q', job.name + "_beside"), file('q', name + "_beside"));
-  return result;
-}
-
-CommandJob ExplorationCommands::one_direction(const std::string& name, const CommandJob& both,
-                                              std::optional<double> other_ds) const {
-  CommandJob result = renamed(name, both);
-  Command& run = result.commands.back();
+CommandJob ExplorationCommands::one_direction(CommandJob both, std::optional<double> other_ds) {
+  Command& run = both.commands.back();
   std::erase(run, both_directions);
-  if (!other_ds) return result;
+  if (!other_ds) return both;
   std::erase_if(run, sets_step);
   run.push_back(fmt::format("DS={}", *other_ds));
-  return result;
+  return both;
 }
 
-std::optional<CommandJob> ExplorationCommands::longer(const std::string& name, const CommandJob& job) const {
-  constexpr int most = 6400;
-  const auto limits = [](const std::string& word) { return word.starts_with("NMX="); };
-  if (std::any_of(constants_.begin(), constants_.end(), limits)) return std::nullopt;
-  CommandJob result = renamed(name, job);
-  Command& run = result.commands.back();
-  const auto at = std::find_if(run.begin(), run.end(), limits);
-  const int points = at == run.end() ? usual_points : parse_integer(at->substr(4)).value_or(most);
-  if (4 * points > most) return std::nullopt;
-  const std::string word = fmt::format("NMX={}", 4 * points);
-  if (at == run.end())
-    run.push_back(word);
-  else
-    *at = word;
-  return result;
+CommandJob ExplorationCommands::with_points(CommandJob job, int points) {
+  Command& run = job.commands.back();
+  std::erase_if(run, sets_points);
+  run.push_back(fmt::format("NMX={}", points));
+  return job;
+}
+
+bool ExplorationCommands::limits_points() const {
+  return std::any_of(constants_.begin(), constants_.end(), sets_points);
 }
 
 bool ExplorationCommands::goes_in_both_directions(const CommandJob& job) {

@@ -80,6 +80,9 @@ struct GivenFiles {
   std::vector<std::string> constants;
 };
 
+/// NMX of runs where nothing else is said.
+inline constexpr int usual_points = 400;
+
 class ExplorationCommands {
  public:
   /// `system` must outlive this; `has_added_section`: tchat has cut it. Throws UserError where the request's range is
@@ -109,10 +112,12 @@ class ExplorationCommands {
   /// What begins at a labelled point, whose commands make the files of names_of(name).
   CommandJob switching(const std::string& name, const SwitchPoint& at) const;
   /// One direction of a switch that goes in both: with its DS, or with this one, which is for the other direction.
-  CommandJob one_direction(const std::string& name, const CommandJob& both, std::optional<double> other_ds) const;
+  static CommandJob one_direction(CommandJob both, std::optional<double> other_ds);
   static bool goes_in_both_directions(const CommandJob& job);
-  /// The same job with four times as many points; nothing where the command line limits them, or there are enough.
-  std::optional<CommandJob> longer(const std::string& name, const CommandJob& job) const;
+  /// The same job with at most so many points.
+  static CommandJob with_points(CommandJob job, int points);
+  /// Does the command line limit the points of runs?
+  bool limits_points() const;
   /// The run along the known branch.
   CommandJob correction(const OrbitComparison& at) const;
   /// The equilibrium of a label as that of another field.
@@ -134,7 +139,6 @@ class ExplorationCommands {
   /// The same without DS: its sign has been chosen.
   Command run_words_without_step() const;
   CommandJob sweep_job(const std::string& name, const std::vector<std::string>& states, const Command& options) const;
-  CommandJob renamed(const std::string& name, const CommandJob& job) const;
   CommandJob job(const std::string& name, Commands commands, std::vector<std::string> inputs) const;
   std::string at_value(double value) const;
 

@@ -45,7 +45,10 @@ struct BranchCandidate {
   int returns = 1;                                     ///< at grazing, one impact in so many
   std::string attractor;                               ///< without a parent
   std::function<CommandJob(const std::string&)> make;  ///< its job, for files of this name
+  int points = usual_points;                           ///< at most, of its run
 };
+
+constexpr int most_points = 16 * usual_points;  // of a branch that NMX has cut on its way
 
 class Explorer {
  public:
@@ -134,10 +137,7 @@ class Explorer {
     const ParameterVector par = parameters();
     const HybridSimulation simulation(simulation_rule(request, loaded_.constants, system, x, par), x, par,
                                       simulation_settings(request, interrupted_));
-    const std::vector<IndexVector>& watched = simulation.mode().index_vectors;
-    return std::any_of(watched.begin(), watched.end(), [&](const IndexVector& index) {
-      return system.event(index.event, x.data(), par.data()) < 0.0 && reverses_flow(system, index, x, par);
-    });
+    return !simulation.walls_behind().empty();
   }
 
   bool add_sweep(const CommandJob& job) {
@@ -296,8 +296,11 @@ class Explorer {
     ExploredBranch& branch = one.branch;
     std::optional<double> ds;
     if (first_is_known) ds = -read_constants_file(commands_.file('r', branch.name)).step;
+    one.make = [make = candidate.make, ds](const std::string& name) {
+      return ExplorationCommands::one_direction(make(name), ds);
+    };
     branch.name = next_name();
-    branch.job = commands_.one_direction(branch.name, branch.job, ds);
+    branch.job = one.make(branch.name);
     branch.origin += fmt::format(", the other direction is {}", other.name);
     return one;
   }
@@ -322,10 +325,11 @@ class Explorer {
   }
 
   /// A run with more points in the place of one that was cut off.
-  bool take_longer(BranchCandidate candidate, const CommandJob& job, std::vector<BranchCandidate>& next) {
+  bool take_longer(BranchCandidate candidate, std::vector<BranchCandidate>& next) {
+    candidate.points *= 4;
     candidate.branch.name = next_name();
-    candidate.branch.job = job;
-    return take(candidate, runner_.run({job}).front(), next);
+    candidate.branch.job = ExplorationCommands::with_points(candidate.make(candidate.branch.name), candidate.points);
+    return take(candidate, runner_.run({candidate.branch.job}).front(), next);
   }
 
   /// Says where its orbits are those of a known branch, reflected.
@@ -353,9 +357,8 @@ class Explorer {
     const RunRecord record = run_record(commands_.file('d', branch.name));
     if (candidate.returns > 1 && record.only_at_start) return false;
     const PointFile points = read_point_file(commands_.file('p', branch.name));
-    if (is_cut_off(record, points))
-      if (const auto longer = commands_.longer(fmt::format("b{}", named_ + 1), branch.job))
-        return take_longer(candidate, *longer, next);
+    if (candidate.points < most_points && !commands_.limits_points() && is_cut_off(record, points))
+      return take_longer(candidate, next);
     std::vector<CataloguedSection> sections = catalogued_sections(branch.name, points, commands_.monitors());
     const std::optional<std::vector<KnownBranch>> found =
         known_branches(sections, is_switch_in_both_directions(candidate));
