@@ -12,7 +12,7 @@
 #include "files/dat_file.hpp"
 #include "files/solution_file_reader.hpp"
 #include "model/parameter_vector.hpp"
-#include "motion/simulation_run.hpp"
+#include "motion/recurrence.hpp"
 
 namespace tchat {
 

@@ -10,9 +10,10 @@
 #include "base/messages.hpp"
 #include "linear/dense_matrix.hpp"
 #include "maps/invariant_curve.hpp"
-#include "motion/attractor_search.hpp"
+#include "motion/chaos_evidence.hpp"
 #include "motion/growth_series.hpp"
-#include "motion/hybrid_simulation.hpp"
+#include "motion/recurrence.hpp"
+#include "motion/settle.hpp"
 
 namespace tchat {
 
@@ -151,6 +152,7 @@ using Eigen::Index;
 /// Exponents that are told from zero by so many error bars, and by this much per return.
 constexpr double bars = 3.0;
 constexpr double least_growth = level::visible;
+constexpr double least_range = 1e-3;   // of a motion, in extents
 constexpr long looked_at = 64;         // returns between two looks for a period
 constexpr long first_decision = 2000;  // returns of which exponents are made
 
@@ -177,53 +179,104 @@ std::string trouble(const IteratedMap& map, const Iterate& iterate, const Vector
   return "";
 }
 
-/// Iterates from a point beside another one.
-class IteratesBeside : public MotionBeside {
+/// One return of a map: from which state, and why there is none after it.
+struct MapReturn {
+  VectorXd x;
+  Iterate iterate;
+  std::string trouble;
+};
+
+bool goes_on(const MapReturn& step) { return step.trouble.empty(); }
+
+/// A motion of returns, for settle().
+class MapMotion {
  public:
-  IteratesBeside(const IteratedMap& map, VectorXd x, const ParameterVector& par, const MapIteration& settings)
+  MapMotion(const IteratedMap& map, VectorXd x, const ParameterVector& par, const MapIteration& settings)
       : map_(map), par_(par), settings_(settings), x_(std::move(x)) {}
 
-  bool pass(long returns, LyapunovSpectrum* spectrum) override {
-    QrAccumulator exponents(map_.coordinates(), map_.exponents());
-    for (long k = 0; k < returns; ++k) {
-      if (settings_.interrupted && k % 1024 == 0 && settings_.interrupted()) throw ComputationError("interrupted");
-      const Iterate iterate = map_.step(x_, par_);
-      message_ = trouble(map_, iterate, x_, settings_);
-      if (!message_.empty()) return false;
-      low_ = k == 0 ? x_ : low_.cwiseMin(x_);
-      high_ = k == 0 ? x_ : high_.cwiseMax(x_);
-      if (spectrum != nullptr) exponents.pass(map_.tangent(x_, par_), iterate.time);
-      time_ += iterate.time;
-      x_ = iterate.image;
-    }
-    if (spectrum != nullptr) *spectrum = exponents.spectrum();
-    return true;
+  MapReturn next(double) {
+    if (settings_.interrupted && ++steps_ % 1024 == 0 && settings_.interrupted()) throw ComputationError("interrupted");
+    MapReturn step{x_, map_.step(x_, par_), ""};
+    step.trouble = trouble(map_, step.iterate, x_, settings_);
+    if (!step.trouble.empty()) return step;
+    time_ += step.iterate.time;
+    x_ = step.iterate.image;
+    return step;
   }
-  VectorXd range() const override { return high_ - low_; }
-  double time() const override { return time_; }
-  std::string why_ended() const override { return message_; }
+  double time() const { return time_; }
+  const VectorXd& x() const { return x_; }
 
  private:
   const IteratedMap& map_;
   const ParameterVector& par_;
   const MapIteration& settings_;
-  VectorXd x_, low_, high_;
+  VectorXd x_;
   double time_ = 0.0;
+  long steps_ = 0;
+};
+
+/// Iterates from a point beside another one.
+class IteratesBeside : public MotionBeside {
+ public:
+  IteratesBeside(const IteratedMap& map, VectorXd x, const ParameterVector& par, const MapIteration& settings)
+      : map_(map), par_(par), motion_(map, std::move(x), par, settings) {}
+
+  bool pass(long returns, LyapunovSpectrum* spectrum) override {
+    QrAccumulator exponents(map_.coordinates(), map_.exponents());
+    low_ = high_ = motion_.x();
+    const auto add = [&](const MapReturn& step, bool) {
+      message_ = step.trouble;
+      low_ = low_.cwiseMin(step.x);
+      high_ = high_.cwiseMax(step.x);
+      if (goes_on(step) && spectrum != nullptr) exponents.pass(map_.tangent(step.x, par_), step.iterate.time);
+      return false;
+    };
+    const Course course = settle(motion_, plan_of_events(returns), add);
+    if (spectrum != nullptr) *spectrum = exponents.spectrum();
+    return !course.has_ended;
+  }
+  VectorXd range() const override { return high_ - low_; }
+  double time() const override { return motion_.time(); }
+  std::string why_ended() const override { return message_; }
+
+ private:
+  const IteratedMap& map_;
+  const ParameterVector& par_;
+  MapMotion motion_;
+  VectorXd low_, high_;
   std::string message_;
 };
 
 class Iteration {
  public:
   Iteration(const IteratedMap& map, const VectorXd& x0, const ParameterVector& par, const MapIteration& settings)
-      : map_(map), par_(par), settings_(settings), x_(x0) {}
+      : map_(map),
+        par_(par),
+        settings_(settings),
+        motion_(map, x0, par, settings),
+        recurrence_(settings.max_period, settings.recognition) {
+    const VectorXd& extent = map.smooth().extent();
+    recurrence_.measure([&map](const VectorXd& x, const VectorXd& y) { return map.smooth().difference(x, y); },
+                        least_range * extent);
+  }
 
   MapAttractor run() {
-    for (long k = 1; k <= settings_.transient + settings_.returns && found_.period == 0; ++k) {
-      if (!step()) return found_;
-      if (k % looked_at == 0 || k == settings_.transient + settings_.returns) found_.period = period();
-      if (found_.period == 0 && k == settings_.transient) forget();
-    }
-    found_.last = x_;
+    SimulationPlan plan;
+    plan.transient_events = settings_.transient;
+    plan.events = settings_.returns;
+    const Course course = settle(motion_, plan, [&](const MapReturn& step, bool is_transient) {
+      if (!goes_on(step)) {
+        found_.kind = AttractorKind::escape;
+        found_.message = step.trouble;
+        found_.time = NAN;
+        return true;
+      }
+      add(step, is_transient);
+      return found_.period > 0;
+    });
+    found_.last = motion_.x();
+    if (course.has_ended) return found_;
+    if (found_.period == 0) found_.period = recurrence_.period().value_or(0);
     const std::size_t kept = found_.period > 0 ? static_cast<std::size_t>(found_.period) : points_.size();
     keep(points_.size() - kept);
     if (found_.period > 0)
@@ -234,45 +287,20 @@ class Iteration {
   }
 
  private:
-  bool step() {
-    if (settings_.interrupted && ++steps_ % 1024 == 0 && settings_.interrupted()) throw ComputationError("interrupted");
-    const Iterate iterate = map_.step(x_, par_);
-    found_.message = trouble(map_, iterate, x_, settings_);
-    if (!found_.message.empty()) {
-      found_.kind = AttractorKind::escape;
-      found_.time = NAN;
-      found_.last = x_;
-      return false;
-    }
-    points_.push_back(x_);
+  void add(const MapReturn& step, bool is_transient) {
+    if (was_transient_ && !is_transient) forget();
+    was_transient_ = is_transient;
+    const Iterate& iterate = step.iterate;
+    points_.push_back(step.x);
     penetrations_.push_back(iterate.penetration);
     contacts_.push_back(iterate.contact);
     times_.push_back(iterate.time);
-    x_ = iterate.image;
-    return true;
-  }
-
-  /// The least one by which the last iterates repeat themselves, twice at least; 0: none.
-  int period() const {
-    const auto count = static_cast<long>(points_.size());
-    const VectorXd& scale = map_.smooth().extent();
     // A motion that does not repeat itself covers a range; one that does may lie in a point: then the extents decide.
-    VectorXd low = points_.back(), high = points_.back();
-    const long seen = std::min<long>(count, 3 * settings_.max_period);
-    for (auto x = points_.end() - seen; x != points_.end(); ++x) low = low.cwiseMin(*x), high = high.cwiseMax(*x);
-    const VectorXd range = (high - low).cwiseMin(scale).cwiseMax(1e-3 * scale);
-    for (long p = 1; p <= settings_.max_period && 3 * p <= count; ++p) {
-      bool repeats = true;
-      for (long k = 0; repeats && k < 2 * p; ++k) {
-        const auto later = static_cast<std::size_t>(count - 1 - k);
-        const auto earlier = later - static_cast<std::size_t>(p);
-        const VectorXd d = map_.smooth().difference(points_[later], points_[earlier]);
-        repeats = contacts_[later] == contacts_[earlier] &&
-                  d.cwiseQuotient(range).cwiseAbs().maxCoeff() <= settings_.recognition;
-      }
-      if (repeats) return static_cast<int>(p);
-    }
-    return 0;
+    recurrence_.add({1, iterate.contact ? 1 : 2, 1}, iterate.image, step.x, step.x);
+    if (++returns_ % looked_at != 0) return;
+    // Near a multiplier of -1 it repeats itself best after two turns, at first.
+    const int period = recurrence_.period().value_or(0);
+    found_.period = period == std::exchange(seen_, period) ? period : 0;
   }
 
   /// Of the transient only what may turn out to be a period.
@@ -289,7 +317,7 @@ class Iteration {
   void keep(std::size_t from) {
     const auto first = std::max(from, points_.size() - std::min<std::size_t>(points_.size(), wanted()));
     const auto count = static_cast<Index>(points_.size() - first);
-    found_.points.resize(x_.size(), count);
+    found_.points.resize(motion_.x().size(), count);
     found_.penetrations.resize(count);
     found_.time = found_.period > 0 ? 0.0 : NAN;
     for (Index k = 0; k < count; ++k) {
@@ -347,18 +375,16 @@ class Iteration {
     long done = 0;
     for (long decision = std::min(settings_.most_returns, first_decision);;
          decision = std::min(2 * decision, settings_.most_returns)) {
-      for (; done < decision; ++done) {
-        if (settings_.interrupted && done % 1024 == 0 && settings_.interrupted()) throw ComputationError("interrupted");
-        const Iterate iterate = map_.step(x_, par_);
-        if (!iterate.image.allFinite()) break;
-        accumulator.pass(map_.tangent(x_, par_), iterate.time);
-        x_ = iterate.image;
-      }
+      const Course course = settle(motion_, plan_of_events(decision - done), [&](const MapReturn& step, bool) {
+        if (goes_on(step)) accumulator.pass(map_.tangent(step.x, par_), step.iterate.time);
+        return false;
+      });
+      done += course.events;
       found_.spectrum = accumulator.spectrum();
       if (decision >= settings_.most_returns || done < decision || is_decided(done)) break;
     }
-    growing_ = VectorXd::Zero(x_.size());  // unknown of a reduced map, whose coordinate is no state
-    if (map_.coordinates() == x_.size()) growing_ = accumulator.growing_direction();
+    growing_ = VectorXd::Zero(motion_.x().size());  // unknown of a reduced map, whose coordinate is no state
+    if (map_.coordinates() == growing_.size()) growing_ = accumulator.growing_direction();
   }
 
   double bar(long returns) const {
@@ -389,7 +415,7 @@ class Iteration {
   /// Chaotic, unless the exponent is that of something unstable near which the iterates are.
   void judge_chaos(double exponent) {
     const auto begin_beside = [&](const VectorXd& change) -> std::unique_ptr<MotionBeside> {
-      return std::make_unique<IteratesBeside>(map_, x_ + change, par_, settings_);
+      return std::make_unique<IteratesBeside>(map_, motion_.x() + change, par_, settings_);
     };
     const ChaosEvidence evidence = chaos_evidence(begin_beside, growing_, exponent);
     if (evidence.is_chaotic)
@@ -402,8 +428,12 @@ class Iteration {
   const IteratedMap& map_;
   const ParameterVector& par_;
   const MapIteration& settings_;
-  VectorXd x_, growing_;
-  long steps_ = 0;
+  MapMotion motion_;
+  Recurrence recurrence_;
+  bool was_transient_ = true;
+  long returns_ = 0;
+  int seen_ = 0;  // period at the last look
+  VectorXd growing_;
   MapAttractor found_;
   std::vector<VectorXd> points_;
   std::vector<double> penetrations_, times_;

@@ -246,13 +246,15 @@ int simulate_torus(const SimulationRequest& request, const std::string& torus_na
   SimulationResult result;
   {
     ProgressLine line(progress);
-    result = run_simulation(simulation, plan_of(request.plan, one_return.size()), [&](const SimulatedSegment& segment) {
-      if (segment.ended_by == SegmentEnd::event) motion.push_back({segment.index, segment.start});
+    AttractorSearch search(request.plan.max_period, request.plan.recognition, motion_settings);
+    const auto keep = [&](const SimulatedSegment& segment) {
+      if (goes_on(segment)) motion.push_back({segment.index, segment.start});
       longest = std::max(longest, segment.duration);
       if (line.is_due()) line.show(fmt::format("{} events, t = {:.6g} ", segment.number, segment.end_time()));
-    });
+    };
+    result = run_simulation(simulation, plan_of(request.plan, one_return.size()), keep, search);
   }
-  if (result.last.ended_by == SegmentEnd::failed) throw ComputationError(result.last.message);
+  if (result.end == MotionEnd::failed) throw ComputationError(result.last.message);
   if (motion.empty())
     throw ComputationError(
         fmt::format("{}: no segment ended in an event after the transient: {}", request.name, result.last.message));

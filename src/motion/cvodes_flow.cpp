@@ -44,7 +44,9 @@ Context make_context() {
   return Context(context);
 }
 
-constexpr int not_evaluable = 1;  // tells CVODES to try a smaller step
+constexpr int not_evaluable = 1;     // tells CVODES to try a smaller step
+constexpr long most_stalled = 1000;  // steps in a row
+constexpr double few_roundings = 4.0;
 
 }  // namespace
 
@@ -56,10 +58,10 @@ struct CvodesFlow::Implementation {
   VectorXd par;
   FlowOptions options;
   std::string message;
-  std::string not_evaluated;  // which function, and where
-  double time = 0.0;          // of the flow as callers see it
-  double reached = 0.0;       // by the integrator; the flow from `time` to here is still to be looked at
-  long steps = 0;
+  std::string not_evaluated;    // which function, and where
+  double time = 0.0;            // of the flow as callers see it
+  double reached = 0.0;         // by the integrator; the flow from `time` to here is still to be looked at
+  long steps = 0, stalled = 0;  // in all; the last ones, that have hardly changed the time
   std::vector<int> events;
   std::optional<EventWatch> watch;
   bool finds_roots = false;  // CVODES does
@@ -226,6 +228,7 @@ struct CvodesFlow::Implementation {
   /// One step of CVODES, or the part of it up to the next root. Roots too close to each other (CV_ILL_INPUT) end its
   /// search for roots; that of the watch goes on. False when the integration failed.
   bool step(double end_time) {
+    const double begun = reached;
     int flag = CVode(cvode(), end_time, x.get(), &reached, CV_ONE_STEP);
     if (flag == CV_ILL_INPUT && finds_roots) {
       CVodeRootInit(cvode(), 0, nullptr);
@@ -237,11 +240,12 @@ struct CvodesFlow::Implementation {
     std::fill(is_root.begin(), is_root.end(), 0);
     if (flag == CV_ROOT_RETURN) CVodeGetRootInfo(cvode(), is_root.data());
     if (flag < 0 && message.empty()) message = fmt::format("CVODES gave up with code {}", flag);
-    if (flag >= 0 && ++steps > options.max_steps) {
-      message = fmt::format("more than {} steps", options.max_steps);
-      return false;
-    }
-    return flag >= 0;
+    if (flag < 0) return false;
+    const double rounding = few_roundings * std::numeric_limits<double>::epsilon() * std::abs(reached);
+    stalled = std::abs(reached - begun) <= rounding ? stalled + 1 : 0;
+    if (stalled > most_stalled) message = "steps have become too small to change the time";
+    if (++steps > options.max_steps) message = fmt::format("more than {} steps", options.max_steps);
+    return stalled <= most_stalled && steps <= options.max_steps;
   }
 
   /// Looks for falls up to where the integrator is.

@@ -192,9 +192,9 @@ FoundOrbit without_cuts(FoundOrbit orbit, std::vector<int> monitored) {
   return orbit;
 }
 
-FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, const VectorXd& par,
-                  const IndexVector& first, bool is_guess) {
-  const std::vector<SimulatedSegment> turn = in_standard_order(result.turn, first);
+FoundOrbit refine(const HybridSystem& system, const Turn& recognised, const VectorXd& par, const IndexVector& first,
+                  bool is_guess) {
+  const std::vector<SimulatedSegment> turn = in_standard_order(recognised.segments, first);
   FoundOrbit found;
   found.sizes = sizes_in(system, turn, par).sizes();
   double period = 0.0;
@@ -205,15 +205,15 @@ FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, co
     found.modes.push_back(segment.mode);
     found.instants.push_back(period > 0.0 && segment.duration <= together * period);
   }
-  const VectorXd range = ranges(turn, result.ignorable, found.sizes);
-  PeriodicOrbit orbit = shoot_finely(system, found, turn.front().start, par, result.ignorable);
+  const VectorXd range = ranges(turn, recognised.ignorable, found.sizes);
+  PeriodicOrbit orbit = shoot_finely(system, found, turn.front().start, par, recognised.ignorable);
   // Only where shooting has closed the orbit does its map have all segments.
   if (const std::size_t events = orbit.converged ? true_period(found, orbit, range) : turn.size();
       events < turn.size()) {
     found.signature.resize(events);
     found.modes.resize(events);
     found.instants.resize(events);
-    orbit = shoot_finely(system, found, orbit.start, par, result.ignorable);
+    orbit = shoot_finely(system, found, orbit.start, par, recognised.ignorable);
   }
   found.start = orbit.start;
   found.map = orbit.map;
@@ -234,11 +234,11 @@ FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, co
     return found;
   }
   found.converged = true;
-  found.multipliers = multipliers_without(orbit.map.derivative, result.ignorable);
+  found.multipliers = multipliers_without(orbit.map.derivative, recognised.ignorable);
   const auto states = static_cast<std::size_t>(least_dimension(system, found.signature));
   if (found.multipliers.size() > states) found.multipliers.resize(states);  // the others are zero
   found.advance = VectorXd::Zero(found.start.size());
-  for (const Eigen::Index k : result.ignorable) found.advance(k) = orbit.map.end(k) - orbit.start(k);
+  for (const Eigen::Index k : recognised.ignorable) found.advance(k) = orbit.map.end(k) - orbit.start(k);
   return found;
 }
 

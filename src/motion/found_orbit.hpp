@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "motion/orbit_flow.hpp"
-#include "motion/simulation_run.hpp"
+#include "motion/recurrence.hpp"
 
 namespace tchat {
 
@@ -59,10 +59,10 @@ FoundOrbit without_cuts(FoundOrbit orbit, std::vector<int> monitored);
 /// has it, in front, and the smallest sequence of those.
 std::vector<SimulatedSegment> in_standard_order(std::vector<SimulatedSegment> turn, const IndexVector& first);
 
-/// Refines the recognised turn of `result`, whose segments are rotated so that the smallest index vector, or `first` if
+/// Refines a turn that has been recognised, whose segments are rotated so that the smallest index vector, or `first` if
 /// the orbit has it, comes first. What fails is a value: no convergence, or convergence to another orbit than the one
 /// simulated, unless that was a guess.
-FoundOrbit refine(const HybridSystem& system, const SimulationResult& result, const Eigen::VectorXd& par,
+FoundOrbit refine(const HybridSystem& system, const Turn& recognised, const Eigen::VectorXd& par,
                   const IndexVector& first, bool is_guess = false);
 
 // A refined periodic orbit as rows of a .dat file: all segments at common times tau of [0, 1], on the mesh that a

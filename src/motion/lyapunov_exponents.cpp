@@ -14,7 +14,7 @@
 #include "model/function_values.hpp"
 #include "model/scales.hpp"
 #include "motion/cvodes_flow.hpp"
-#include "motion/simulation_run.hpp"
+#include "motion/recurrence.hpp"
 #include "motion/tangent_flow.hpp"
 #include "motion/watched_flow.hpp"
 

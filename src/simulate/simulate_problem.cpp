@@ -17,9 +17,10 @@
 #include "model/events.hpp"
 #include "model/scales.hpp"
 #include "motion/attractor_search.hpp"
+#include "motion/chaos_evidence.hpp"
 #include "motion/found_orbit.hpp"
 #include "motion/growth_series.hpp"
-#include "motion/simulation_run.hpp"
+#include "motion/settle.hpp"
 #include "plugin/problem_setup.hpp"
 #include "settings/constants_writer.hpp"
 #include "settings/run_settings.hpp"
@@ -59,8 +60,11 @@ std::string zeros_text(const LyapunovSpectrum& spectrum, int zeros, int dimensio
   const std::string found = counted(zeros, "zero") + ", none positive";
   if (keeps_volumes(spectrum, dimension))
     return fmt::format("{}, and volumes are kept: regular motion, on no attractor.", found);
-  return fmt::format("{}: as of quasi-periodic motion on a torus of dimension {}, if it does not repeat itself.", found,
-                     zeros);
+  return fmt::format(
+      "{}: as of quasi-periodic motion, on a torus of dimension {} if its attractor is smooth; or of a period too long "
+      "to "
+      "be looked for.",
+      found, zeros);
 }
 
 /// The orbit that the motion keeps to is not stable, and the exponents are its own.
@@ -89,10 +93,15 @@ std::string meaning(const LyapunovSpectrum& spectrum, int section, int dimension
   if (!evidence.doubt.empty())
     return fmt::format("{}undecided: {}.", signs.positive > 0 ? counted(signs.positive, "positive") + ", but " : "",
                        evidence.doubt);
-  if (signs.positive > 0) return fmt::format("{}: the motion is chaotic.", counted(signs.positive, "positive"));
+  if (signs.positive > 0)
+    return fmt::format("{}: the motion is chaotic{}.", counted(signs.positive, "positive"),
+                       keeps_volumes(spectrum, dimension) ? ", and volumes are kept: it is on no attractor" : "");
   if (signs.unclear > 0)
-    return "Undecided: the bars are too large to tell what the motion is; a longer one has smaller bars (--time, "
-           "--events, --accuracy).";
+    return fmt::format(
+        "{}: the bars are too large to tell {}; a longer one has smaller bars (--time, --events, "
+        "--accuracy).",
+        keeps_volumes(spectrum, dimension) ? "On no attractor, as volumes are kept" : "Undecided",
+        keeps_volumes(spectrum, dimension) ? "whether the motion is chaotic" : "what the motion is");
   if (signs.zero > 0) return zeros_text(spectrum, signs.zero + (has_flow ? 1 : 0), dimension);
   if (signs.negative > 0 && (has_flow || section != 0))
     return fmt::format(
@@ -136,35 +145,37 @@ std::string losses(const LyapunovSpectrum& spectrum) {
   return text;
 }
 
-std::string ended_text(const SimulationResult& result) {
-  if (result.accumulation) return "No Lyapunov exponents: the motion ends where events accumulate.\n";
-  if (result.dies_out)
-    return "No Lyapunov exponents: the motion dies out; --events or --time computes those of a part of it.\n";
-  if (result.last.ended_by == SegmentEnd::interrupted) return "No Lyapunov exponents yet.\n";
-  return "No Lyapunov exponents: the motion has ended; --events or --time computes those of a part of it.\n";
+std::string ended_text(MotionEnd end) {
+  if (end == MotionEnd::accumulates) return "No Lyapunov exponents: the motion ends where events accumulate.\n";
+  if (end == MotionEnd::interrupted) return "No Lyapunov exponents yet.\n";
+  return fmt::format("No Lyapunov exponents: the motion {}; --events or --time computes those of a part of it.\n",
+                     end == MotionEnd::dies_out  ? "dies out"
+                     : end == MotionEnd::escapes ? "escapes"
+                                                 : "has ended");
 }
 
 /// Goes on until the bars are small enough, to the segment `last`; false when it was ended otherwise than by an event.
 bool go_on(HybridSimulation& simulation, LyapunovAccumulator& exponents, double accuracy, ProgressLine& line,
-           const std::function<void(const SimulatedSegment&)>& passed, SimulatedSegment& last) {
+           AttractorSearch& search, SimulatedSegment& last) {
   exponents.begin();
-  long next_look = least_measured;
-  for (long done = 1; done <= most_measured; ++done) {
-    last = simulation.next(std::numeric_limits<double>::max());
-    exponents.pass(last);
-    if (last.ended_by != SegmentEnd::event) return false;
-    passed(last);
+  long next_look = least_measured, done = 0;
+  const auto is_enough = [&](const SimulatedSegment& segment, bool) {
+    last = segment;
+    exponents.pass(segment);
+    if (!goes_on(segment)) return true;
+    search.add(simulation, segment);
+    ++done;
     if (line.is_due()) {
       const LyapunovSpectrum now = exponents.spectrum();
       line.show(fmt::format("{} events for exponents, the largest {}{}, bars up to {:.2g} ", done,
                             value_text(now.exponents(0), now.errors(0)), bar_text(now.errors(0)), now.accuracy()));
     }
-    if (done < next_look) continue;
+    if (done < next_look) return false;
     const LyapunovSpectrum spectrum = exponents.spectrum();
-    if (spectrum.accuracy() <= accuracy && (signs_of(spectrum).unclear == 0 || done >= most_undecided)) return true;
     next_look += next_look / 4;
-  }
-  return true;
+    return spectrum.accuracy() <= accuracy && (signs_of(spectrum).unclear == 0 || done >= most_undecided);
+  };
+  return !settle(simulation, plan_of_events(most_measured), is_enough).has_ended;
 }
 
 /// Why a positive exponent may be no chaos; "" where it is, or where there is none.
@@ -183,8 +194,6 @@ std::string doubt_of_chaos(HybridSimulation& simulation, SimulatedSegment last, 
 }
 
 }  // namespace
-
-bool has_wanted_length(const SimulationPlan& plan) { return plan.time || plan.events; }
 
 std::unique_ptr<LyapunovAccumulator> exponents_to_measure(const SimulationRequest& request, const HybridSystem& system,
                                                           const VectorXd& par) {
@@ -215,21 +224,19 @@ std::string exponents_of(const SimulationRequest& request, const SimulationResul
                          LyapunovAccumulator& exponents, AttractorSearch& search, const FoundOrbit& orbit,
                          const SimulationSettings& settings, std::ostream* progress) {
   const HybridSystem& system = simulation.system();
-  const bool goes_on = !has_wanted_length(request.plan);
-  if (goes_on && (result.last.ended_by != SegmentEnd::event || result.accumulation || result.dies_out))
-    return ended_text(result);
+  const bool is_open = !request.plan.has_length();
+  if (is_open && (!result.goes_on() || result.last.ended_by != SegmentEnd::event)) return ended_text(result.end);
   std::string remark;
   SimulatedSegment last = result.last;
-  if (goes_on) {
+  if (is_open) {
     ProgressLine line(progress);
-    const auto passed = [&](const SimulatedSegment& segment) { search.add(simulation, segment); };
-    if (!go_on(simulation, exponents, request.accuracy, line, passed, last))
+    if (!go_on(simulation, exponents, request.accuracy, line, search, last))
       remark = "  The simulation has ended before the bars were small enough.\n";
   }
   LyapunovSpectrum spectrum = exponents.spectrum();
   if (search.orbit() && search.orbit()->stability == OrbitStability::stable && orbit.converged && request.section == 0)
     widen_bars(spectrum, orbit);
-  if (goes_on && remark.empty() && spectrum.accuracy() > request.accuracy)
+  if (is_open && remark.empty() && spectrum.accuracy() > request.accuracy)
     remark =
         fmt::format("  After {} events a bar is still above {:g} (--accuracy); --events or --time simulate longer.\n",
                     spectrum.events, request.accuracy);
@@ -397,9 +404,12 @@ namespace {
 
 /// The turn of `result` is that of the orbit which the motion has settled on, if it has.
 void take_orbit(AttractorSearch& search, const HybridSimulation& simulation, SimulationResult& result) {
-  if (result.accumulation || result.dies_out || result.last.ended_by == SegmentEnd::failed) return;
+  const bool is_over = result.accumulation || result.end == MotionEnd::dies_out || result.end == MotionEnd::escapes ||
+                       result.end == MotionEnd::failed;
+  if (is_over || result.equilibrium) return;
   if (!search.orbit() && !search.equilibrium()) search.conclude(simulation);
-  if (search.orbit()) result.turn = search.orbit()->turn;
+  if (!search.orbit()) result.equilibrium = search.equilibrium();
+  if (search.orbit()) result.turn.segments = search.orbit()->turn;
 }
 
 /// Where the orbit meets this event, next to a state near it: shooting is more accurate than the search.
@@ -414,14 +424,6 @@ VectorXd end_on_orbit(const HybridSimulation& simulation, const FoundOrbit& orbi
   if (!best) return near;
   return onto_surface(simulation.system(), event.event, no_function, *best, simulation.parameters().data(), orbit.sizes)
       .value_or(near);
-}
-
-/// The equilibrium that the motion comes to, at events or after the last one.
-std::optional<VectorXd> equilibrium_of(const AttractorSearch& search, const HybridSimulation& simulation,
-                                       const SimulatedSegment& last) {
-  if (last.ended_by != SegmentEnd::no_event) return search.equilibrium();
-  return reached_equilibrium(simulation.system(), last, simulation.parameters(), search.ignorable(),
-                             simulation.sizes());
 }
 
 }  // namespace
@@ -463,7 +465,7 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
   SimulationPlan plan = request.plan;
   if (request.refine) plan.events = plan.events.value_or(plan.max_period) + 1;  // up to the first one is no segment
   std::vector<SimulatedSegment> recorded;                                       // of a guess
-  const bool measures_on_the_way = exponents && has_wanted_length(request.plan);
+  const bool measures_on_the_way = exponents && request.plan.has_length();
   AttractorSearch search(request.plan.max_period, request.plan.recognition, simulation_settings(request, interrupted));
   {
     ProgressLine line(progress);
@@ -471,18 +473,15 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
       files.write(segment);
       if (request.refine) recorded.push_back(segment);
       if (measures_on_the_way) exponents->pass(segment);
-      if (has_wanted_length(plan) && segment.ended_by == SegmentEnd::event) search.add(simulation, segment);
       if (line.is_due()) line.show(fmt::format("{} events, t = {:.6g} ", segment.number, segment.end_time()));
     };
-    result = run_simulation(simulation, plan, keep,
-                            [&](const SimulatedSegment& segment) { return search.has_settled(simulation, segment); });
+    result = run_simulation(simulation, plan, keep, search);
   }
   files.finish();
-  result.ignorable = search.ignorable();
   RecordedPeriod period;
   if (request.refine) {
-    period = recorded_period(recorded, request.plan.events, result.ignorable);
-    result.turn = period.segments;
+    period = recorded_period(recorded, request.plan.events, result.turn.ignorable);
+    result.turn.segments = period.segments;
   } else {
     take_orbit(search, simulation, result);
   }
@@ -493,26 +492,26 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
   if (result.is_periodic()) {
     const IndexVector first =
         constants.has_signature ? constants.settings.segments.front().index : IndexVector{0, 0, 0};
-    if (request.without_sections) result.turn = without_sections(system, std::move(result.turn));
+    if (request.without_sections) result.turn.segments = without_sections(system, std::move(result.turn.segments));
     if (request.refine) {
-      orbit = refine(system, result, start.par, first, true);
-      say(refined_text(orbit, static_cast<long>(result.turn.size()), period.size));
+      orbit = refine(system, result.turn, start.par, first, true);
+      say(refined_text(orbit, static_cast<long>(result.turn.segments.size()), period.size));
     } else {
-      orbit = refine(system, result, start.par, first);
-      if (!orbit.converged) rest = equilibrium_of(search, simulation, result.last);
+      orbit = refine(system, result.turn, start.par, first);
+      if (!orbit.converged) rest = result.equilibrium;
       if (!orbit.converged)
-        say(rest ? rest_text(*rest) : not_refined_text(orbit, static_cast<long>(result.turn.size())));
+        say(rest ? rest_text(*rest) : not_refined_text(orbit, static_cast<long>(result.turn.segments.size())));
     }
     if (orbit.converged) say(orbit_text(system, orbit));
   } else if (request.refine) {
     say(nothing_recorded_text(request.plan));
-  } else if (rest = equilibrium_of(search, simulation, result.last); rest) {
+  } else if (rest = result.equilibrium; rest) {
     say(rest_text(*rest));
   } else {
     say(no_orbit_text(system, result, request.plan, search));
   }
   const bool is_attracting = orbit.converged && orbit.stability() == OrbitStability::stable;
-  if (exponents && search.equilibrium() && !has_wanted_length(request.plan)) {
+  if (exponents && result.equilibrium && !request.plan.has_length()) {
     say("No Lyapunov exponents: the trajectory converges to an equilibrium; --events or --time computes those of a "
         "part of it.\n");
   } else if (exponents) {
@@ -524,7 +523,7 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
     say(exponents_of(request, result, measured, *exponents, search, orbit, settings, progress));
   }
   say(written_text(output, files));
-  if (result.last.ended_by == SegmentEnd::failed) {
+  if (result.end == MotionEnd::failed) {
     print_failure(warnings, result.last.message);
     return 1;
   }

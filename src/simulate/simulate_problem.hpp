@@ -15,9 +15,6 @@ namespace tchat {
 
 // Lyapunov exponents of a `tchat simulate`: how long they are averaged, and how they are told.
 
-/// Is a length given after the transient? Then exponents are those of that part of the motion.
-bool has_wanted_length(const SimulationPlan& plan);
-
 /// Null when none are wanted. Throws UserError when there are not so many, or the section does not exist.
 std::unique_ptr<LyapunovAccumulator> exponents_to_measure(const SimulationRequest& request, const HybridSystem& system,
                                                           const Eigen::VectorXd& par);

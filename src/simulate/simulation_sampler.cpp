@@ -13,9 +13,10 @@
 #include "base/messages.hpp"
 #include "model/events.hpp"
 #include "motion/attractor_search.hpp"
+#include "motion/chaos_evidence.hpp"
 #include "motion/growth_series.hpp"
 #include "motion/lyapunov_exponents.hpp"
-#include "motion/simulation_run.hpp"
+#include "motion/settle.hpp"
 #include "motion/watched_flow.hpp"
 #include "simulate/attractor_numbering.hpp"
 #include "simulate/recorded_states.hpp"
@@ -29,7 +30,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double never = 1e300;
-constexpr double far_away = 1e6;               // a state of this size has escaped, if not so large at the start
 constexpr double every_minimum = 1e300;        // as a share of the largest value: all contacts are noted
 constexpr std::size_t samples_following = 12;  // of a segment, among which the hand-over is chosen
 constexpr long first_decision = 64;            // events after which exponents may tell the kind of a motion
@@ -78,7 +78,8 @@ class SampleRun {
     exponents.attach(with_exponents);
     HybridSimulation simulation(simulation_rule(request, setup_.constants, system_, start_, par_), start_, par_,
                                 with_exponents);
-    settle(simulation);
+    judge_.emplace(simulation, search_, MotionJudge::Settings{true, true});
+    approach(simulation);
     sample_.events = events_;
     if (sample_.known > 0) return std::move(sample_);
     if (is_open_) tell_kind(simulation, exponents);
@@ -123,38 +124,38 @@ class SampleRun {
   /// Carries the frame of the exponents on over so many events. False when the motion ends.
   bool go_on(HybridSimulation& simulation, LyapunovAccumulator& exponents, long events) {
     exponents.begin();
-    for (long done = 0; done < events; ++done) {
-      const SimulatedSegment segment = simulation.next(never);
+    const auto pass = [&](const SimulatedSegment& segment, bool) {
       if (segment.ended_by == SegmentEnd::interrupted) throw SampleInterrupted();
       exponents.pass(segment);
-      if (segment.ended_by != SegmentEnd::event) return false;
-    }
-    return true;
+      return false;
+    };
+    return !settle(simulation, plan_of_events(events), pass).has_ended;
   }
 
   /// Of a motion that has not settled yet: goes on until it does, or the exponents tell.
   void tell_kind(HybridSimulation& simulation, LyapunovAccumulator& exponents) {
     exponents.begin();
     VectorXd end;
+    const auto pass = [&](const SimulatedSegment& segment, bool) {
+      exponents.pass(segment);
+      end = segment.end;
+      return is_judged(simulation, segment, false);
+    };
     long done = 0;
     for (long decision = first_decision;; decision *= 2) {
-      for (; done < decision; ++done) {
-        const SimulatedSegment segment = simulation.next(never);
-        if (segment.ended_by == SegmentEnd::interrupted) throw SampleInterrupted();
-        exponents.pass(segment);
-        ++events_;
-        if (segment.ended_by != SegmentEnd::event) {
-          sample_.message = "it has ended while its exponents were computed: " + segment.message;
-          return;
-        }
-        if (search_.has_settled(simulation, segment)) return keep_settled();
-        end = segment.end;
-      }
+      const Course course = settle(simulation, plan_of_events(decision - done), pass);
+      events_ += course.events;
+      if (course.is_stopped) return;
+      done = decision;
       const LyapunovSpectrum spectrum = exponents.spectrum();
       const AttractorKind kind = kind_by_exponents(spectrum);
       const bool tells = kind == AttractorKind::chaotic || kind == AttractorKind::quasi_periodic;
       if (!tells && decision < last_decision) continue;
-      if (search_.conclude(simulation)) return keep_settled();
+      if (search_.conclude(simulation)) {
+        rest_ = search_.equilibrium();
+        sample_.kind = settled_kind();
+        return;
+      }
       std::string doubt = search_.doubt();
       if (doubt.empty()) doubt = search_.unbounded(system_);
       bool is_told = tells && doubt.empty() && !search_.is_near_unstable_orbit();
@@ -164,14 +165,21 @@ class SampleRun {
       }
       if (!is_told && decision < last_decision) continue;
       keep_exponents(spectrum);
-      if (is_told && kind == AttractorKind::quasi_periodic && are_volumes_kept(simulation, end)) {
-        sample_.message = "regular motion that does not repeat itself, and volumes are kept";
+      if (are_volumes_kept(simulation, end)) {
+        sample_.message = volumes_text(is_told ? kind : AttractorKind::none);
         return;
       }
       sample_.kind = is_told ? kind : AttractorKind::none;
       if (!is_told) sample_.message = undecided_text(spectrum, kind, doubt);
       return;
     }
+  }
+
+  static std::string volumes_text(AttractorKind kind) {
+    const char* const motion = kind == AttractorKind::chaotic          ? "chaotic motion"
+                               : kind == AttractorKind::quasi_periodic ? "regular motion that does not repeat itself"
+                                                                       : "motion that does not repeat itself";
+    return fmt::format("{}, and volumes are kept", motion);
   }
 
   bool are_volumes_kept(const HybridSimulation& simulation, const VectorXd& end) {
@@ -208,58 +216,58 @@ class SampleRun {
   }
 
   /// Up to the attractor, and so many events of it as are wanted where it does not repeat itself.
-  void settle(HybridSimulation& simulation) {
-    const SimulationPlan& plan = setup_.request.plan;
-    const long wanted = plan.time ? std::numeric_limits<long>::max() : plan.events.value_or(100);
-    std::optional<double> recording_since;
-    while (true) {
-      const bool is_transient = events_ < plan.transient_events || simulation.time() < plan.transient_time;
-      if (!is_transient && !recording_since) {
-        recording_since = simulation.time();
-        kept_.clear();
-      }
-      if (recording_since && (static_cast<long>(kept_.size()) >= wanted ||
-                              (plan.time && simulation.time() >= *recording_since + *plan.time))) {
-        is_open_ = true;
-        return;
-      }
-      SimulatedSegment segment = simulation.next(never);
-      if (segment.ended_by != SegmentEnd::event) return end_without_event(simulation, segment);
-      ++events_;
-      if (const std::optional<AttractorKind> kind = look(simulation, segment)) {
-        sample_.kind = *kind;
-        return;
-      }
-      if (sample_.known > 0) return;
-    }
+  void approach(HybridSimulation& simulation) {
+    SimulationPlan plan = setup_.request.plan;
+    if (!plan.time) plan.events = plan.events.value_or(100);
+    bool was_transient = true;
+    const Course course = settle(simulation, plan, [&](const SimulatedSegment& segment, bool is_transient) {
+      if (was_transient && !is_transient) kept_.clear();
+      was_transient = is_transient;
+      if (segment.ended_by == SegmentEnd::end_time) return false;
+      keep(segment, is_transient);
+      if (goes_on(segment) && !setup_.known.empty()) sample_.known = capture_.look(segment.index, segment.after);
+      return sample_.known > 0 || is_judged(simulation, segment, is_transient);
+    });
+    events_ = course.events;
+    is_open_ = !course.is_stopped;
   }
 
-  /// What the motion has settled on with this segment, if it has.
-  std::optional<AttractorKind> look(const HybridSimulation& simulation, const SimulatedSegment& segment) {
-    chattering_.add(segment.index, segment.duration);
-    decay_.add(segment.index, segment.event_velocity);
-    keep(segment);
-    if (!setup_.known.empty()) sample_.known = capture_.look(segment.index, segment.after);
-    if (sample_.known > 0) return std::nullopt;
-    if (search_.has_settled(simulation, segment)) return settled_kind();
-    if (chattering_.accumulation()) {
+  /// What the motion has come to with this segment: true where its kind, or why it has none, is known.
+  bool is_judged(const HybridSimulation& simulation, const SimulatedSegment& segment, bool is_transient) {
+    const MotionEnd end = judge_->look(simulation, segment, is_transient);
+    if (end == MotionEnd::open) return false;
+    if (end == MotionEnd::interrupted) throw SampleInterrupted();
+    if (!goes_on(segment)) kept_.assign(1, segment);
+    rest_ = judge_->equilibrium();
+    sample_.kind = kind_of(end);
+    if (end == MotionEnd::no_event) has_stayed_ = true;
+    if (end == MotionEnd::escapes)
+      sample_.message = fmt::format("it escapes: at t = {:.6g} it is far beyond where it has been", segment.end_time());
+    else if (end == MotionEnd::accumulates && judge_->accumulation())
       sample_.message = fmt::format("events accumulate at t = {:.6g}", segment.end_time());
-      return AttractorKind::chattering;
+    else if (!goes_on(segment))
+      sample_.message = segment.message;
+    return true;
+  }
+
+  AttractorKind kind_of(MotionEnd end) {
+    switch (end) {
+      case MotionEnd::settled:
+        return settled_kind();
+      case MotionEnd::accumulates:
+        return AttractorKind::chattering;
+      case MotionEnd::dies_out:
+        return AttractorKind::rest;
+      case MotionEnd::escapes:
+        return AttractorKind::escape;
+      default:
+        return AttractorKind::none;
     }
-    if (decay_.dies_out()) return AttractorKind::rest;
-    if (search_.is_beyond(segment.after, far_away, start_)) {
-      sample_.message = fmt::format("a state is larger than {:g} at t = {:.6g}", far_away, segment.end_time());
-      return AttractorKind::escape;
-    }
-    return std::nullopt;
   }
 
   /// Dots are those of the orbit itself. A motion that keeps to an unstable one has no attractor.
   AttractorKind settled_kind() {
-    if (!search_.orbit()) {
-      rest_ = search_.equilibrium();
-      return AttractorKind::rest;
-    }
+    if (rest_) return AttractorKind::rest;
     const std::vector<SimulatedSegment>& turn = search_.orbit()->turn;
     kept_.assign(turn.begin(), turn.end());
     const SettledOrbit& orbit = *search_.orbit();
@@ -275,33 +283,12 @@ class SampleRun {
     sample_.message = "undecided: " + search_.doubt() + "; start beside it (--state)";
     return AttractorKind::none;
   }
-  void keep_settled() { sample_.kind = settled_kind(); }
 
   /// Segments of which dots are made: of the transient only what may turn out to be a period.
-  void keep(const SimulatedSegment& segment) {
+  void keep(const SimulatedSegment& segment, bool is_transient) {
     kept_.push_back(segment);
-    const bool is_transient =
-        events_ <= setup_.request.plan.transient_events || segment.start_time < setup_.request.plan.transient_time;
     const auto most = static_cast<std::size_t>(setup_.request.plan.max_period);
     while (is_transient && kept_.size() > most) kept_.pop_front();
-  }
-
-  void end_without_event(const HybridSimulation& simulation, const SimulatedSegment& segment) {
-    if (segment.ended_by == SegmentEnd::interrupted) throw SampleInterrupted();
-    sample_.message = segment.message;
-    kept_.clear();
-    kept_.push_back(segment);
-    const VectorXd& x = segment.end;
-    const bool is_far = search_.is_beyond(x, far_away, start_);
-    if (segment.ended_by == SegmentEnd::sticks) {
-      sample_.kind = AttractorKind::chattering;
-    } else if (is_far) {
-      sample_.kind = AttractorKind::escape;
-    } else if (segment.ended_by == SegmentEnd::no_event) {
-      rest_ = reached_equilibrium(system_, segment, par_, search_.ignorable(), simulation.sizes());
-      sample_.kind = rest_ ? AttractorKind::rest : AttractorKind::escape;
-      has_stayed_ = !rest_;
-    }
   }
 
   void finish() {
@@ -601,8 +588,7 @@ class SampleRun {
   VectorXd par_, start_;
   StartSide side_;
   AttractorSearch search_;
-  ChatteringDetector chattering_;
-  DecayDetector decay_;
+  std::optional<MotionJudge> judge_;
   Capture capture_;
   long events_ = 0;
   std::optional<VectorXd> rest_;  // the equilibrium that the motion comes to

@@ -12,7 +12,7 @@
 #include "model/hybrid_system.hpp"
 #include "model/parameter_vector.hpp"
 #include "motion/hybrid_simulation.hpp"
-#include "motion/simulation_run.hpp"
+#include "motion/settle.hpp"
 #include "plugin/fortran_problem.hpp"
 #include "plugin/problem_library.hpp"
 #include "settings/run_settings.hpp"

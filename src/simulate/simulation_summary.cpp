@@ -176,7 +176,10 @@ std::string why_it_ended(const HybridSystem& system, const SimulationResult& res
         limit.uncertainty > 0.0 ? fmt::format(" +- {:.1e}", limit.uncertainty) : "", limit.remaining,
         state_text(last.after));
   }
-  if (result.dies_out)
+  if (result.end == MotionEnd::escapes)
+    return fmt::format("The motion escapes: at t = {:.6g} it is at x = {}, far beyond where it has been.\n",
+                       last.end_time(), state_text(last.end));
+  if (result.end == MotionEnd::dies_out)
     return fmt::format(
         "The motion dies out: the last events are 1e-12 times as fast as the first. It rests near x = {}.\n",
         state_text(last.after));
@@ -346,11 +349,12 @@ std::string missed_text(const HybridSystem& system, const SimulationResult& resu
 
 std::string no_orbit_text(const HybridSystem& system, const SimulationResult& result, const SimulationPlan& plan,
                           const AttractorSearch& search) {
-  if (result.accumulation || result.dies_out) return "";
-  switch (result.last.ended_by) {
-    case SegmentEnd::failed:
-    case SegmentEnd::sticks:
-    case SegmentEnd::no_event:
+  switch (result.end) {
+    case MotionEnd::accumulates:
+    case MotionEnd::dies_out:
+    case MotionEnd::escapes:
+    case MotionEnd::no_event:
+    case MotionEnd::failed:
       return "";
     default:
       if (!search.doubt().empty())
@@ -371,7 +375,7 @@ std::string no_orbit_text(const HybridSystem& system, const SimulationResult& re
                  "{} events.\nIt may need longer (--transient-time, --events), have a longer period (--max-period), be "
                  "recognised with a\nlooser --recognition or a smaller --tolerance; or the motion is quasi-periodic "
                  "(--torus) "
-                 "or chaotic (--lyapunov tells).\n",
+                 "or chaotic (--lyapunov shows which).\n",
                  plan.recognition, plan.max_period) +
              missed_text(system, result);
   }

@@ -7,7 +7,7 @@
 #include "motion/attractor_search.hpp"
 #include "motion/found_orbit.hpp"
 #include "motion/hybrid_simulation.hpp"
-#include "motion/simulation_run.hpp"
+#include "motion/settle.hpp"
 #include "simulate/simulation_start.hpp"
 
 namespace tchat {

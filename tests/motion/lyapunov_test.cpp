@@ -4,6 +4,7 @@
 
 #include "base/messages.hpp"
 #include "lyapunov_problems.hpp"
+#include "motion/chaos_evidence.hpp"
 #include "support/linear_oscillator.hpp"
 
 using namespace tchat;
@@ -37,6 +38,28 @@ void check_orbit_exponents(const LyapunovSpectrum& s, const std::vector<double>&
     CHECK(error <= 2.0 * s.errors(static_cast<Eigen::Index>(j)));
     CHECK(s.errors(static_cast<Eigen::Index>(j)) < 1e-4);
   }
+}
+
+TEST_CASE("growth like a power of time is no chaos, at however many error bars") {
+  // Windows of 64, 128, ... events: exp(0.1 t) has the same exponent in each, t^2 half of that of the window before.
+  const auto judged = [](double second_share) {
+    ChaosJudge judge;
+    double rate = 0.1, length = 64.0;
+    for (int window = 0; window < 5; ++window, length *= 2.0, rate *= second_share) {
+      LyapunovSpectrum spectrum;
+      spectrum.exponents = Eigen::Vector2d(rate, 0.0);
+      spectrum.errors = Eigen::Vector2d(1e-3 * rate, 1e-9);
+      spectrum.structural = {1};
+      spectrum.time = length;
+      spectrum.events = static_cast<long>(length);
+      judge.add(spectrum, Eigen::Vector2d(1.0, 1.0));
+    }
+    return judge.is_chaotic();
+  };
+  CHECK(judged(1.0));
+  CHECK(judged(0.9));
+  CHECK_FALSE(judged(0.5));
+  CHECK_FALSE(judged(0.6));  // as ln(s t) / t does
 }
 
 }  // namespace

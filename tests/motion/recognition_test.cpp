@@ -5,7 +5,7 @@
 #include "lyapunov_problems.hpp"
 #include "motion/attractor_search.hpp"
 #include "motion/growth_series.hpp"
-#include "motion/simulation_run.hpp"
+#include "motion/recurrence.hpp"
 #include "support/linear_oscillator.hpp"
 
 using namespace tchat;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "motion/simulation_run.hpp"
+#include "motion/settle.hpp"
 #include "support/sampled_orbit.hpp"
 #include "support/test_system.hpp"
 
@@ -95,31 +95,17 @@ struct Simulated {
 
 inline Simulated simulate(const ModeRule& rule, const Eigen::VectorXd& x, const ParameterVector& par,
                           const SimulationPlan& plan, SimulationSettings settings = settings_for_tests()) {
-  HybridSimulation simulation(rule, x, par, std::move(settings));
+  HybridSimulation simulation(rule, x, par, settings);
   Simulated all;
-  Recurrence recurrence(plan.max_period, plan.recognition);
-  std::vector<bool> ignorable;
-  const auto keep = [&](const SimulatedSegment& s) {
-    all.segments.push_back(s);
-    if (s.ended_by != SegmentEnd::event) return;
-    if (ignorable.empty()) recurrence.ignore(ignorable = ignorable_states(simulation.system(), {s.start, s.end}, par));
-    recurrence.add(s);
-  };
-  all.result =
-      run_simulation(simulation, plan, keep, [&](const SimulatedSegment&) { return recurrence.period().has_value(); });
-  for (std::size_t i = 0; i < ignorable.size(); ++i)
-    if (ignorable[i]) all.result.ignorable.push_back(static_cast<Eigen::Index>(i));
-  if (all.result.accumulation || all.result.dies_out || !recurrence.period()) return all;
-  const auto end = all.segments.end() - (all.result.last.ended_by == SegmentEnd::event ? 0 : 1);
-  all.result.turn.assign(end - *recurrence.period(), end);
+  AttractorSearch search(plan.max_period, plan.recognition, settings);
+  all.result = run_simulation(
+      simulation, plan, [&](const SimulatedSegment& s) { all.segments.push_back(s); }, search);
+  if (plan.has_length()) search.conclude(simulation);
+  if (all.result.goes_on() && search.orbit()) all.result.turn.segments = search.orbit()->turn;
   return all;
 }
 
-inline SimulationPlan so_many_events(long events) {
-  SimulationPlan plan;
-  plan.events = events;
-  return plan;
-}
+inline SimulationPlan so_many_events(long events) { return plan_of_events(events); }
 
 inline SimulationPlan so_long(double time) {
   SimulationPlan plan;

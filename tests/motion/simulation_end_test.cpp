@@ -3,7 +3,7 @@
 
 #include "../model/linear_oscillator.hpp"
 #include "motion/found_orbit.hpp"
-#include "motion/simulation_run.hpp"
+#include "motion/settle.hpp"
 #include "simulated_problems.hpp"
 
 using namespace tchat;
@@ -100,6 +100,19 @@ TEST_CASE("a ball that loses nothing, or gains, does not chatter") {
   }
 }
 
+TEST_CASE("a ball that gains at each impact escapes, whatever the length units") {
+  SimulationSettings settings = settings_for_tests();
+  settings.flow.max_duration = 1e6;
+  for (const double unit : {1.0, 1e-6, 1e6}) {
+    const Simulated ball = simulate(always<BouncingBall>({{1, 1, 1}}), Vector2d(2.0 * unit, 0.0),
+                                    parameters({9.81 * unit, 1.1}), {}, settings);
+    INFO(unit);
+    CHECK(ball.result.end == MotionEnd::escapes);
+    // Heights grow by 1.21 at each impact, to 1e6 times what they were after 16: 72 impacts later.
+    CHECK(ball.result.events == 16 + 73);
+  }
+}
+
 TEST_CASE("an impact that leaves no velocity sticks, and is told") {
   const Simulated ball = simulate(always<BouncingBall>({{1, 1, 1}}), Vector2d(2.0, 0.0), parameters({9.81, 0.0}), {});
   CHECK(ball.result.last.ended_by == SegmentEnd::sticks);
@@ -117,7 +130,7 @@ TEST_CASE("an orbit is recognised after the same number of events whatever sampl
     settings.samples = samples;
     const Simulated run = simulate(rule, Eigen::Vector4d(0.0, 0.0, 0.0, 1.0), parameters({0.1}), {}, settings);
     REQUIRE(run.result.is_periodic());
-    const SimulatedSegment& turn = run.result.turn.front();
+    const SimulatedSegment& turn = run.result.turn.segments.front();
     CHECK(turn.low(0) == Approx(-10.0).epsilon(1e-3));
     CHECK(turn.high(0) == Approx(10.0).epsilon(1e-3));
     events.push_back(run.result.events);
@@ -127,13 +140,21 @@ TEST_CASE("an orbit is recognised after the same number of events whatever sampl
 
 TEST_CASE("a motion that dies out is no periodic orbit") {
   const Simulated damped = simulate(always<Damped>({{1, 1, 1}}), Vector2d(1.0, 0.0), parameters({0.1}), {});
-  CHECK(damped.result.dies_out);
+  CHECK(damped.result.end == MotionEnd::settled);
   CHECK_FALSE(damped.result.is_periodic());
-  CHECK(damped.result.last.after.norm() < 1e-11);
-  // exp(-0.05 t) = 1e-12, and a few events more
+  REQUIRE(damped.result.equilibrium);
+  CHECK(damped.result.equilibrium->norm() < 1e-10);
+  // exp(-0.05 t) = 1e-12, and a few events more: then its events say so themselves.
+  DecayDetector decay;
+  double dead = 0.0;
+  for (const SimulatedSegment& segment :
+       simulate(always<Damped>({{1, 1, 1}}), Vector2d(1.0, 0.0), parameters({0.1}), so_many_events(120)).segments) {
+    decay.add(segment.index, segment.event_velocity);
+    if (dead == 0.0 && decay.dies_out()) dead = segment.end_time();
+  }
   const double expected = 20.0 * std::log(1e12);
-  CHECK(damped.result.last.end_time() > expected);
-  CHECK(damped.result.last.end_time() < expected + 6.0 * 2.0 * pi);
+  CHECK(dead > expected);
+  CHECK(dead < expected + 6.0 * 2.0 * pi);
   // Slow decay is not taken for an orbit either, while it lasts.
   const Simulated slow =
       simulate(always<Damped>({{1, 1, 1}}), Vector2d(1.0, 0.0), parameters({1e-4}), so_many_events(100));
@@ -150,19 +171,19 @@ TEST_CASE("periodic orbits of 1 to 32 events: the logistic map's cascade", "[slo
     CAPTURE(cycle.a);
     const Simulated run = logistic(cycle.a, 16);
     REQUIRE(run.result.is_periodic());
-    CHECK(static_cast<int>(run.result.turn.size()) == cycle.period);
-    double c = run.result.turn.front().start(1);
+    CHECK(static_cast<int>(run.result.turn.segments.size()) == cycle.period);
+    double c = run.result.turn.segments.front().start(1);
     double advance = 0.0, multiplier = 1.0;
     for (int k = 0; k < cycle.period; ++k) {
       advance += c;
       multiplier *= cycle.a * (1.0 - 2.0 * c);
       c = cycle.a * c * (1.0 - c);
     }
-    CHECK(c == Approx(run.result.turn.front().start(1)).epsilon(1e-7));
+    CHECK(c == Approx(run.result.turn.segments.front().start(1)).epsilon(1e-7));
 
     // s, on which nothing depends, may advance.
-    CHECK(run.result.ignorable == std::vector<Eigen::Index>{2});
-    const FoundOrbit orbit = refine(system_of<LogisticClock>(), run.result, parameters({cycle.a}), {0, 0, 0});
+    CHECK(run.result.turn.ignorable == std::vector<Eigen::Index>{2});
+    const FoundOrbit orbit = refine(system_of<LogisticClock>(), run.result.turn, parameters({cycle.a}), {0, 0, 0});
     REQUIRE(orbit.converged);
     CHECK(static_cast<int>(orbit.signature.size()) == cycle.period);
     CHECK(orbit.map.period == Approx(cycle.period).epsilon(1e-12));
@@ -172,7 +193,7 @@ TEST_CASE("periodic orbits of 1 to 32 events: the logistic map's cascade", "[slo
     CHECK(orbit.stability() == OrbitStability::stable);
   }
   CHECK_FALSE(logistic(3.569, 16).result.is_periodic());
-  CHECK(logistic(3.569, 32, 100000.0).result.turn.size() == 32);
+  CHECK(logistic(3.569, 32, 100000.0).result.turn.segments.size() == 32);
   CHECK_FALSE(logistic(3.9, 16).result.is_periodic());  // chaotic
 }
 
@@ -191,9 +212,9 @@ TEST_CASE("an orbit is refined from its lowest index vector on, or from the one 
   const Simulated run = simulate(rule, Vector2d(0.5, 1.0), parameters({9.81, 1.0}), plan);
   REQUIRE(run.result.is_periodic());
   // Neutral: shooting may say that its matrix is singular, but the order stands.
-  const FoundOrbit lowest = refine(system_of<BouncingBall>(), run.result, parameters({9.81, 1.0}), {0, 0, 0});
+  const FoundOrbit lowest = refine(system_of<BouncingBall>(), run.result.turn, parameters({9.81, 1.0}), {0, 0, 0});
   CHECK(lowest.signature == Signature{{1, 1, 1}, {1, 2, 2}});
-  const FoundOrbit wanted = refine(system_of<BouncingBall>(), run.result, parameters({9.81, 1.0}), {1, 2, 2});
+  const FoundOrbit wanted = refine(system_of<BouncingBall>(), run.result.turn, parameters({9.81, 1.0}), {1, 2, 2});
   CHECK(wanted.signature == Signature{{1, 2, 2}, {1, 1, 1}});
 }
 
@@ -205,8 +226,8 @@ TEST_CASE("an orbit whose events shooting does not find again is a value") {
   segment.start = segment.low = Vector2d(0.0, 1.0);
   segment.high = segment.end = Vector2d(1.0, 2.0);
   SimulationResult result;
-  result.turn = {segment, segment};
-  const FoundOrbit found = refine(system_of<BouncingBall>(), result, parameters({-9.81, 1.0}), {0, 0, 0});
+  result.turn.segments = {segment, segment};
+  const FoundOrbit found = refine(system_of<BouncingBall>(), result.turn, parameters({-9.81, 1.0}), {0, 0, 0});
   CHECK_FALSE(found.converged);
   CHECK_THAT(found.message, Contains("segment 1"));
 }

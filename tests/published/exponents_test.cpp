@@ -132,7 +132,7 @@ TEST_CASE("exponents of a torus: two zeros, the others as published for it") {
     CHECK(std::abs(exponents[j].value - expected[j]) <= 2.0 * exponents[j].bar + 5e-5);  // digits of the last two
   }
   CHECK(exponents[0].bar < 1e-4);
-  CHECK(torus.out.find("2 zero exponents, none positive: as of quasi-periodic motion on a torus of dimension 2") !=
+  CHECK(torus.out.find("2 zero exponents, none positive: as of quasi-periodic motion, on a torus of dimension 2") !=
         std::string::npos);
 }
 

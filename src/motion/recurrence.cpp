@@ -1,4 +1,4 @@
-#include "motion/simulation_run.hpp"
+#include "motion/recurrence.hpp"
 
 #include <array>
 #include <limits>
@@ -141,8 +141,13 @@ void keep_independent(const HybridSystem& system, FunctionKind kind, const Vecto
 
 }  // namespace
 
-void Recurrence::add(const SimulatedSegment& segment) {
-  ends_.push_back({segment.index, segment.after, segment.low, segment.high});
+void Recurrence::measure(Difference difference, const VectorXd& least_range) {
+  difference_ = std::move(difference);
+  least_range_ = least_range;
+}
+
+void Recurrence::add(const IndexVector& index, const VectorXd& after, const VectorXd& low, const VectorXd& high) {
+  ends_.push_back({index, after, low, high});
   if (ends_.size() > 2 * static_cast<std::size_t>(max_period_)) ends_.pop_front();
 }
 
@@ -174,6 +179,7 @@ VectorXd Recurrence::scale(std::size_t segments) const {
   }
   constexpr double share = 1e-3;
   VectorXd range = high - low;
+  if (least_range_.size() > 0) return range.cwiseMax(least_range_);
   double largest = 0.0;
   for (Eigen::Index i = 0; i < range.size(); ++i)
     if (!is_ignored(ignorable_, i)) largest = std::max(largest, range(i));
@@ -202,7 +208,8 @@ double Recurrence::difference(std::size_t period) const {
   const VectorXd scale = this->scale(2 * period);
   double largest = 0.0;
   for (std::size_t i = 0; i < period; ++i) {
-    const VectorXd d = (back(i).after - back(i + period).after).cwiseAbs();
+    const VectorXd &now = back(i).after, &then = back(i + period).after;
+    const VectorXd d = (difference_ ? difference_(now, then) : VectorXd(now - then)).cwiseAbs();
     for (Eigen::Index k = 0; k < d.size(); ++k)
       if (d(k) != 0.0) largest = std::max(largest, d(k) / scale(k));
   }
@@ -246,64 +253,6 @@ std::vector<bool> ignorable_states(const HybridSystem& system, const std::vector
     for (const FunctionKind kind : {FunctionKind::field, FunctionKind::event, FunctionKind::jump})
       keep_independent(system, kind, x, par, flags);
   return flags;
-}
-
-namespace {
-
-constexpr double never = 1e300;
-void count_marks(const SimulatedSegment& segment, SimulationResult& result) {
-  for (const SegmentMark& mark : segment.marks) {
-    if (mark.kind == SegmentMark::Kind::contact) ++result.contacts;
-    if (mark.kind == SegmentMark::Kind::beyond) ++result.beyond;
-    if (mark.kind == SegmentMark::Kind::violation && result.violations++ == 0) result.first_violation = segment;
-  }
-  result.simultaneous += segment.simultaneous.empty() ? 0 : 1;
-}
-
-void count_missed(const HybridSimulation& simulation, const SimulatedSegment& segment, SimulationResult& result) {
-  const double* const par = simulation.parameters().data();
-  for (const int event : segment.mode.terminal_events()) {
-    if (event == segment.index.event) continue;
-    if (simulation.system().event(event, segment.start.data(), par) >= 0.0 ||
-        simulation.system().event(event, segment.end.data(), par) >= 0.0)
-      continue;
-    MissedEvent& missed = result.missed[event];
-    if (missed.count++ == 0) missed.first = segment.number;
-  }
-}
-
-}  // namespace
-
-SimulationResult run_simulation(HybridSimulation& simulation, const SimulationPlan& plan,
-                                const std::function<void(const SimulatedSegment&)>& kept,
-                                const std::function<bool(const SimulatedSegment&)>& has_settled) {
-  SimulationResult result;
-  ChatteringDetector chattering;
-  DecayDetector decay;
-  const bool until_it_repeats = !plan.time && !plan.events;
-  const long most = plan.events.value_or(until_it_repeats ? plan.most_events : std::numeric_limits<long>::max());
-  std::optional<double> end_time;
-  while (true) {
-    const bool is_transient = result.events < plan.transient_events || simulation.time() < plan.transient_time;
-    if (!is_transient && result.events - result.dropped >= most) break;
-    if (!is_transient && !end_time) end_time = plan.time ? simulation.time() + *plan.time : never;
-    result.last = simulation.next(end_time.value_or(never));
-    if (!is_transient) {
-      kept(result.last);
-      count_marks(result.last, result);
-      count_missed(simulation, result.last, result);
-    }
-    if (result.last.ended_by != SegmentEnd::event) break;
-    ++result.events;
-    if (is_transient) ++result.dropped;
-    chattering.add(result.last.index, result.last.duration, simulation.time_uncertainty(result.last));
-    result.accumulation = chattering.accumulation();
-    decay.add(result.last.index, result.last.event_velocity);
-    result.dies_out = until_it_repeats && decay.dies_out();
-    if (result.accumulation || result.dies_out) break;
-    if (until_it_repeats && !is_transient && has_settled && has_settled(result.last)) break;
-  }
-  return result;
 }
 
 namespace {

@@ -1,4 +1,4 @@
-/// Simulations of wanted length and how they settle: recurrence, accumulation of events, and convergence to equilibria.
+/// What simulated motions show: recurrence, accumulation of events, growth, states that nothing depends on, equilibria.
 #pragma once
 
 #include <Eigen/Core>
@@ -93,8 +93,14 @@ class Recurrence {
   void take_for_rounding(const std::vector<bool>& states) { without_size_ = states; }
   /// Which states are so small, in all segments looked at, that they may be rounding?
   std::vector<bool> tiny_states() const;
+  /// How far states are apart where some are angles, and a range of each state below which no share is taken.
+  using Difference = std::function<Eigen::VectorXd(const Eigen::VectorXd&, const Eigen::VectorXd&)>;
+  void measure(Difference difference, const Eigen::VectorXd& least_range);
   /// A segment that ended in an event.
-  void add(const SimulatedSegment& segment);
+  void add(const SimulatedSegment& segment) { add(segment.index, segment.after, segment.low, segment.high); }
+  /// The same of a map's return: the state that it has come to, and the extremes of what has been passed.
+  void add(const IndexVector& index, const Eigen::VectorXd& after, const Eigen::VectorXd& low,
+           const Eigen::VectorXd& high);
   /// The smallest period in segments.
   std::optional<int> period() const;
 
@@ -121,6 +127,8 @@ class Recurrence {
   int max_period_;
   double tolerance_;
   std::vector<bool> ignorable_, without_size_;
+  Difference difference_;
+  Eigen::VectorXd least_range_;
   std::deque<End> ends_;  // the last 2 max_period
 };
 
@@ -150,49 +158,11 @@ class RangeGrowth {
 std::vector<bool> ignorable_states(const HybridSystem& system, const std::vector<Eigen::VectorXd>& points,
                                    const Eigen::VectorXd& par);
 
-// A simulation of wanted length: what is dropped as transient, whether it settles on a periodic orbit or dies out,
-// whether events accumulate.
-
-/// How long, and what is looked for. Without `time` and `events`: until the motion repeats itself.
-struct SimulationPlan {
-  double transient_time = 0.0;          ///< segments that begin before this time are dropped
-  long transient_events = 0;            ///< and so many first segments
-  std::optional<double> time;           ///< after the transient
-  std::optional<long> events;           ///< after the transient
-  long most_events = 10000;             ///< where neither is given
-  int max_period = 16;                  ///< of a periodic orbit, in segments
-  double recognition = level::located;  ///< states that are equal, relative to the range of the orbit
-};
-
-/// Segments at whose begin and end a watched event was negative: it can be met only after it has been positive.
-struct MissedEvent {
-  long first = 0;  ///< number of the first of these segments
-  long count = 0;
-};
-
-struct SimulationResult {
-  long events = 0;   ///< segments that ended in an event, transient included
-  long dropped = 0;  ///< of those in the transient
-  long contacts = 0, violations = 0, beyond = 0, simultaneous = 0;  ///< after the transient
-  SimulatedSegment last;                                            ///< the last segment, whatever ended it
-  std::optional<SimulatedSegment> first_violation;                  ///< with its marks
-  std::map<int, MissedEvent> missed;                                ///< by event, after the transient
-  /// The segments of one period, in order, and the states that nothing depends on, from 0: of whoever has looked for
-  /// them (motion/attractor_search.hpp).
-  std::vector<SimulatedSegment> turn;
+/// The segments of one period, in order, and the states that nothing depends on, from 0.
+struct Turn {
+  std::vector<SimulatedSegment> segments;
   std::vector<Eigen::Index> ignorable;
-  std::optional<ChatteringDetector::Accumulation> accumulation;
-  bool dies_out =
-      false;  ///< the last events' h_x f is next to nothing of what it was; not looked for in a given length
-
-  bool is_periodic() const { return !turn.empty(); }
 };
-
-/// `kept` is handed every segment after the transient. Without a wanted length the simulation ends where `has_settled`,
-/// asked after each event behind the transient, says so.
-SimulationResult run_simulation(HybridSimulation& simulation, const SimulationPlan& plan,
-                                const std::function<void(const SimulatedSegment&)>& kept,
-                                const std::function<bool(const SimulatedSegment&)>& has_settled = {});
 
 /// The sizes of the states in segments of a motion with or without an event at the end.
 StateSizes sizes_in(const HybridSystem& system, std::span<const SimulatedSegment> segments, const Eigen::VectorXd& par);

@@ -1,0 +1,132 @@
+#include "motion/settle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tchat {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr double far_away = 1e6;    // in sizes: a motion that is there has escaped
+constexpr double far_at_end = 1e3;  // the same where it has no event any more, and goes on outwards
+constexpr long of_start = 16;       // events in which a motion shows its sizes
+constexpr double at_largest = 0.99;
+
+VectorXd extremes(const SimulatedSegment& segment) { return segment.low.cwiseAbs().cwiseMax(segment.high.cwiseAbs()); }
+
+}  // namespace
+
+MotionJudge::MotionJudge(const HybridSimulation& simulation, AttractorSearch& search, Settings settings)
+    : search_(search), settings_(settings), sizes_(simulation.sizes()) {}
+
+/// Sizes of different states are not told apart: a motion may begin where one of them is nothing yet.
+bool MotionJudge::is_beyond(const VectorXd& x, double sizes) const {
+  VectorXd counted = sizes_, here = x;
+  for (const Index k : search_.ignorable()) counted(k) = here(k) = 0.0;
+  const double largest = counted.maxCoeff();
+  return largest > 0.0 && !(here.cwiseAbs().maxCoeff() <= sizes * largest);
+}
+
+/// Is the largest state larger than before, and still growing?
+bool MotionJudge::is_leaving(const HybridSimulation& simulation, const SimulatedSegment& segment) const {
+  if (!is_beyond(segment.end, far_at_end)) return false;
+  VectorXd x = segment.end, f(segment.end.size());
+  simulation.system().value(FunctionKind::field, segment.mode.field(), x.data(), simulation.parameters().data(),
+                            f.data());
+  for (const Index k : search_.ignorable()) x(k) = 0.0;
+  Index i = 0;
+  const double largest = x.cwiseAbs().maxCoeff(&i);
+  return largest >= at_largest * extremes(segment)(i) && !(x(i) * f(i) <= 0.0);
+}
+
+MotionEnd MotionJudge::end_of(const HybridSimulation& simulation, const SimulatedSegment& segment) {
+  switch (segment.ended_by) {
+    case SegmentEnd::event:
+    case SegmentEnd::end_time:
+      return MotionEnd::open;
+    case SegmentEnd::interrupted:
+      return MotionEnd::interrupted;
+    case SegmentEnd::sticks:
+      return MotionEnd::accumulates;
+    case SegmentEnd::failed:
+      return is_beyond(extremes(segment), far_away) ? MotionEnd::escapes : MotionEnd::failed;
+    case SegmentEnd::no_event:
+      break;
+  }
+  equilibrium_ = reached_equilibrium(simulation.system(), segment, simulation.parameters(), search_.ignorable(),
+                                     simulation.sizes());
+  if (equilibrium_) return MotionEnd::settled;
+  return is_leaving(simulation, segment) ? MotionEnd::escapes : MotionEnd::no_event;
+}
+
+MotionEnd MotionJudge::look(const HybridSimulation& simulation, const SimulatedSegment& segment, bool is_transient) {
+  if (!goes_on(segment)) return end_of(simulation, segment);
+  if (events_++ < of_start) sizes_ = simulation.sizes();
+  chattering_.add(segment.index, segment.duration, simulation.time_uncertainty(segment));
+  decay_.add(segment.index, segment.event_velocity);
+  accumulation_ = chattering_.accumulation();
+  if (accumulation_) return MotionEnd::accumulates;
+  if (settings_.may_stop && decay_.dies_out()) return MotionEnd::dies_out;
+  if (is_transient && !settings_.judges_transient) return MotionEnd::open;
+  if (!settings_.may_stop) {
+    search_.add(simulation, segment);
+    return MotionEnd::open;
+  }
+  if (search_.has_settled(simulation, segment)) {
+    equilibrium_ = search_.equilibrium();
+    return MotionEnd::settled;
+  }
+  return is_beyond(extremes(segment), far_away) ? MotionEnd::escapes : MotionEnd::open;
+}
+
+namespace {
+
+void count_marks(const SimulatedSegment& segment, SimulationResult& result) {
+  for (const SegmentMark& mark : segment.marks) {
+    if (mark.kind == SegmentMark::Kind::contact) ++result.contacts;
+    if (mark.kind == SegmentMark::Kind::beyond) ++result.beyond;
+    if (mark.kind == SegmentMark::Kind::violation && result.violations++ == 0) result.first_violation = segment;
+  }
+  result.simultaneous += segment.simultaneous.empty() ? 0 : 1;
+}
+
+void count_missed(const HybridSimulation& simulation, const SimulatedSegment& segment, SimulationResult& result) {
+  const double* const par = simulation.parameters().data();
+  for (const int event : segment.mode.terminal_events()) {
+    if (event == segment.index.event) continue;
+    if (simulation.system().event(event, segment.start.data(), par) >= 0.0 ||
+        simulation.system().event(event, segment.end.data(), par) >= 0.0)
+      continue;
+    MissedEvent& missed = result.missed[event];
+    if (missed.count++ == 0) missed.first = segment.number;
+  }
+}
+
+}  // namespace
+
+SimulationResult run_simulation(HybridSimulation& simulation, const SimulationPlan& plan,
+                                const std::function<void(const SimulatedSegment&)>& kept, AttractorSearch& search) {
+  SimulationResult result;
+  MotionJudge judge(simulation, search, {!plan.has_length(), false});
+  const Course course = settle(simulation, plan, [&](const SimulatedSegment& segment, bool is_transient) {
+    if (!is_transient) {
+      kept(segment);
+      count_marks(segment, result);
+      count_missed(simulation, segment, result);
+    }
+    result.last = segment;
+    result.end = judge.look(simulation, segment, is_transient);
+    return result.end != MotionEnd::open;
+  });
+  result.events = course.events;
+  result.dropped = course.dropped;
+  result.accumulation = judge.accumulation();
+  result.equilibrium = judge.equilibrium();
+  result.turn.ignorable = search.ignorable();
+  return result;
+}
+
+}  // namespace tchat
