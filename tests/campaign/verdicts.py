@@ -7,7 +7,8 @@ with the truth. A sweep along one branch must give its attractor one number. The
 wrong, or where more than one in twenty of a command's verdicts are undecided, with --nothing one in eight. Numbers are
 compared, too: period, largest multiplier, exponents within four of their error bars.
 
-With --nothing the systems are those of known_motions.py, which settle on nothing: no command may say that they do.
+With --nothing the systems are those of known_motions.py, most of which settle on nothing: no command may say that
+they do.
 """
 
 import argparse
@@ -154,9 +155,20 @@ def run(tchat, command, folder):
     return done.stdout + done.stderr, done.returncode
 
 
-def fault_where_nothing_is(answer, truth):
-    """Of a motion that settles on nothing, or on it so slowly that nobody can tell, or that is not periodic."""
-    wrong = ("periodic",) if truth.kind == "not periodic" else ("periodic", "quasi-periodic", "chaotic", "rest")
+# Where a motion settles on nothing, or on it so slowly that nobody can tell; or on what has no word of its own.
+WRONG_WORDS = {
+    "nothing": ("periodic", "quasi-periodic", "chaotic", "rest"),
+    "slow": ("periodic", "quasi-periodic", "chaotic", "rest"),
+    "leaves": ("periodic", "quasi-periodic", "chaotic", "rest"),
+    "not periodic": ("periodic",),
+    "strange nonchaotic": ("periodic", "chaotic", "rest"),
+    "chaos without an attractor": ("periodic", "quasi-periodic", "rest")}
+
+
+def fault_where_nothing_is(command, answer, truth):
+    wrong = WRONG_WORDS[truth.kind]
+    if truth.kind == "chaos without an attractor" and command == "sweep":
+        wrong += ("chaotic",)
     if answer.kind in wrong:
         return "%s, where it is %s" % (answer, truth.kind)
     return "undecided" if answer.kind == "undecided" and truth.kind == "nothing" else None
@@ -164,8 +176,8 @@ def fault_where_nothing_is(answer, truth):
 
 def fault_of(command, answer, truth):
     """What is wrong with an answer; None where nothing is, "undecided" where it does not say."""
-    if truth.kind in ("nothing", "slow", "not periodic"):
-        return fault_where_nothing_is(answer, truth)
+    if truth.kind in WRONG_WORDS:
+        return fault_where_nothing_is(command, answer, truth)
     if answer.kind in ("undecided", "unstable orbit"):
         return "undecided"
     if command == "simulate" and answer.kind == "no orbit":
@@ -177,7 +189,8 @@ def fault_of(command, answer, truth):
             return "%d events in a period, where there are %d" % (answer.events, truth.events)
         if answer.period and abs(answer.period - truth.period) > PERIOD_ACCURACY[command] * truth.period:
             return "period %.10g, where it is %.10g" % (answer.period, truth.period)
-        if answer.multiplier is not None and abs(answer.multiplier - truth.multiplier) > MULTIPLIER_ACCURACY:
+        if (answer.multiplier is not None and truth.multiplier is not None and
+                abs(answer.multiplier - truth.multiplier) > MULTIPLIER_ACCURACY):
             return "multiplier %.8g, where it is %.8g" % (answer.multiplier, truth.multiplier)
     return fault_of_exponents(answer, truth)
 
