@@ -19,6 +19,7 @@
 #include "model/function_values.hpp"
 #include "model/parameter_vector.hpp"
 #include "model/scales.hpp"
+#include "motion/sparse_solver.hpp"
 
 namespace tchat {
 
@@ -73,6 +74,7 @@ struct CvodesFlow::Implementation {
   // Values of the field and its derivatives at the point last asked for.
   VectorXd f;
   MatrixXd fx, fp;
+  bool has_few_entries = false;  // f_x, that are not zero
 
   Context context = make_context();
   Vector x;
@@ -96,9 +98,12 @@ struct CvodesFlow::Implementation {
         x(N_VNew_Serial(n, context.get()), &N_VDestroy),
         dense(N_VNew_Serial(n, context.get()), &N_VDestroy),
         matrix(SUNDenseMatrix(n, n, context.get()), &SUNMatDestroy),
-        linear_solver(SUNLinSol_Dense(x.get(), matrix.get(), context.get()), &SUNLinSolFree),
+        linear_solver(nullptr, &SUNLinSolFree),
         integrator(CVodeCreate(o.method == IntegrationMethod::bdf ? CV_BDF : CV_ADAMS, context.get())) {
     Eigen::Map<VectorXd>(N_VGetArrayPointer(x.get()), n) = x0;
+    if (n >= least_sparse_dimension && evaluate(x.get())) has_few_entries = is_sparse(fx);
+    linear_solver.reset(has_few_entries ? new_sparse_solver(context.get())
+                                        : SUNLinSol_Dense(x.get(), matrix.get(), context.get()));
     start();
     if (columns > 0) start_sensitivities();
   }
@@ -168,10 +173,15 @@ struct CvodesFlow::Implementation {
                                    void* user_data, N_Vector, N_Vector) {
     Implementation& flow = self(user_data);
     if (!flow.evaluate(at)) return flow.remember_no_derivatives(at);
+    Eigen::SparseMatrix<double> sparse;
+    if (flow.has_few_entries) sparse = flow.fx.sparseView();
     for (int c = 0; c < flow.columns; ++c) {
       const Eigen::Map<const VectorXd> column(N_VGetArrayPointer(s[c]), flow.n);
       Eigen::Map<VectorXd> out(N_VGetArrayPointer(derivative[c]), flow.n);
-      out.noalias() = flow.fx * column;
+      if (flow.has_few_entries)
+        out = sparse * column;
+      else
+        out.noalias() = flow.fx * column;
       if (c >= flow.n) out += flow.fp.col(c - flow.n);
     }
     return 0;

@@ -163,6 +163,13 @@ bool add_segment(const HybridSystem& system, const IndexVector& index, const Vec
     map.message = fmt::format("segment {}: {}", number, flow.message);
     return false;
   }
+  if (!options.variational) {  // h_x f and functions without derivatives: those of the map with derivatives
+    const VectorXd end = jump_at(system, index.jump, flow.end_state.data(), par.data()).image;
+    map.segments.push_back({x, flow.end_state, flow.duration, flow.event_velocity, {}, {}});
+    map.period += flow.duration;
+    x = end;
+    return true;
+  }
   const EndPoint end(system, index, flow.end_state, par, options.active);
   for (const auto& [kind, number_of] : {std::pair(FunctionKind::event, index.event), {FunctionKind::jump, index.jump}})
     if (!has_finite_derivatives(system, kind, number_of, flow.end_state.data(), par.data())) {
@@ -200,7 +207,6 @@ ReturnMap return_map(const HybridSystem& system, const Signature& signature, con
                      const VectorXd& par_given, const FlowOptions& given, const std::vector<bool>& instants) {
   require_signature(system, signature);
   FlowOptions options = given;
-  options.variational = true;
   const VectorXd par = full_parameters(system, par_given);
 
   ReturnMap map;
@@ -210,7 +216,7 @@ ReturnMap return_map(const HybridSystem& system, const Signature& signature, con
   for (std::size_t s = 0; s < signature.size(); ++s)
     if (!add_segment(system, signature[s], par, options, !instants.empty() && instants[s], x, map)) return map;
   map.end = x;
-  map.multipliers = sorted_eigenvalues(map.derivative);
+  if (options.variational) map.multipliers = sorted_eigenvalues(map.derivative);
   map.ok = map.end.allFinite() && map.derivative.allFinite();
   if (!map.ok) map.message = "the last jump cannot be evaluated";
   return map;
@@ -235,9 +241,18 @@ PeriodicOrbit shoot(const HybridSystem& system, const Signature& signature, cons
   const VectorXd sizes = has_sizes ? options.flow.sizes : VectorXd(VectorXd::Ones(guess.size()));
   PeriodicOrbit orbit;
   orbit.start = guess;
-  double last_step = INFINITY;
+  constexpr double next_to_orbit = 1e-4;
+  constexpr Eigen::Index many_states = 24;
+  double last_step = INFINITY, step_before = INFINITY;
+  FlowOptions flow = options.flow;
+  MatrixXd derivative;
   while (true) {
-    orbit.map = return_map(system, signature, orbit.start, par, options.flow, options.instants);
+    // Of many states, next to the orbit, as long as steps become ten times smaller, the derivative is that of the first
+    // one there; at the orbit it is its own.
+    flow.variational = guess.size() < many_states || last_step <= options.tolerance ||
+                       !(last_step <= std::min(next_to_orbit, 0.1 * step_before));
+    step_before = last_step;
+    orbit.map = return_map(system, signature, orbit.start, par, flow, options.instants);
     if (!orbit.map.ok) {
       orbit.message = orbit.map.message;
       return orbit;
@@ -252,7 +267,8 @@ PeriodicOrbit shoot(const HybridSystem& system, const Signature& signature, cons
                                   orbit.iterations, orbit.residual, last_step);
       return orbit;
     }
-    const VectorXd step = closing_step(orbit.map.derivative, -residual, options.ignorable, sizes);
+    if (flow.variational) derivative = orbit.map.derivative;
+    const VectorXd step = closing_step(derivative, -residual, options.ignorable, sizes);
     last_step = step.cwiseQuotient(sizes).lpNorm<Eigen::Infinity>() /
                 (1.0 + orbit.start.cwiseQuotient(sizes).lpNorm<Eigen::Infinity>());
     orbit.start += step;

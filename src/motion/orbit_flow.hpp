@@ -89,8 +89,8 @@ struct ReturnMap {
   Eigen::VectorXcd multipliers;          ///< eigenvalues of M, largest modulus first
 };
 
-/// One turn through the signature from x1 = x_1(0). `instants`: of each segment, does its event come at once? None does
-/// where this is empty.
+/// One turn through the signature from x1 = x_1(0); without derivatives where `options` are not variational.
+/// `instants`: of each segment, does its event come at once? None does where this is empty.
 ReturnMap return_map(const HybridSystem& system, const Signature& signature, const Eigen::VectorXd& x1,
                      const Eigen::VectorXd& par, const FlowOptions& options = {},
                      const std::vector<bool>& instants = {});
@@ -119,8 +119,8 @@ struct PeriodicOrbit {
 Eigen::VectorXd closing_step(const Eigen::MatrixXd& derivative, const Eigen::VectorXd& gap,
                              const std::vector<Eigen::Index>& ignorable, const Eigen::VectorXd& sizes);
 
-/// Newton's method on x1 - R(x1) = 0 with the matrix Id - M. The signature's own events fix the phase, so the matrix
-/// is regular away from folds and branch points.
+/// Newton's method on x1 - R(x1) = 0 with the matrix Id - M; of many states, next to the orbit, with that of an earlier
+/// step. The signature's own events fix the phase, so the matrix is regular away from folds and branch points.
 PeriodicOrbit shoot(const HybridSystem& system, const Signature& signature, const Eigen::VectorXd& guess,
                     const Eigen::VectorXd& par, const ShootingOptions& options = {});
 

@@ -8,12 +8,14 @@
 #include "base/levels.hpp"
 #include "model/events.hpp"
 #include "model/scales.hpp"
+#include "motion/sparse_solver.hpp"
 
 namespace tchat {
 
 namespace {
 
 using Eigen::MatrixXd;
+using SparseMatrix = Eigen::SparseMatrix<double>;
 
 // The error of sixth order that goes with it is about this to the power 7/5.
 constexpr double most_difference = level::differences;
@@ -34,12 +36,20 @@ void commutator(const MatrixXd& a, const MatrixXd& b, MatrixXd& out) {
   out.noalias() -= b * a;
 }
 
+void commutator(const SparseMatrix& a, const SparseMatrix& b, SparseMatrix& out) {
+  out = a * b;
+  const SparseMatrix other = b * a;
+  out -= other;
+}
+
 }  // namespace
 
 TangentFlow::TangentFlow(const HybridSystem& system, const Eigen::VectorXd& par)
     : system_(system), par_(par), f_(system.dimension()), units_(Eigen::VectorXd::Ones(system.dimension())) {
-  for (MatrixXd* const m : {&first_, &middle_, &last_, &a1_, &a2_, &a3_, &c1_, &c2_, &b_, &omega_})
-    m->resize(system.dimension(), system.dimension());
+  for (MatrixXd* const m : {&first_, &middle_, &last_}) m->resize(system.dimension(), system.dimension());
+  const Eigen::Index n = system.dimension();
+  dense_ = {MatrixXd(n, n), MatrixXd(n, n), MatrixXd(n, n), MatrixXd(n, n),
+            MatrixXd(n, n), MatrixXd(n, n), MatrixXd(n, n)};
 }
 
 bool TangentFlow::evaluate(int field, const double* x, MatrixXd& out) {
@@ -68,28 +78,44 @@ bool TangentFlow::series(int field, const DenseOutput& state, double from, doubl
   if (!evaluate(field, state(from + (0.5 - root / 10.0) * step), first_)) return false;
   if (!evaluate(field, state(from + 0.5 * step), middle_)) return false;
   if (!evaluate(field, state(from + (0.5 + root / 10.0) * step), last_)) return false;
-  a1_ = step * middle_;
-  a2_ = (root / 3.0 * step) * (last_ - first_);
-  a3_ = (10.0 / 3.0 * step) * (last_ - 2.0 * middle_ + first_);
-  commutator(a1_, a2_, c1_);
-  b_ = 2.0 * a3_ + c1_;
-  commutator(a1_, b_, c2_);
-  c2_ = a2_ - c2_ / 60.0;
-  b_ = -20.0 * a1_ - a3_ + c1_;
-  commutator(b_, c2_, omega_);
-  omega_ /= 240.0;
-  difference_ = (omega_ + c1_ / 12.0).norm();
-  changes_ = std::max(a2_.norm() / most_slope, a3_.norm() / most_bend);
-  omega_ += a1_ + a3_ / 12.0;
-  norm_ = omega_.norm();
+  has_few_entries_ = is_sparse(middle_);
+  if (!has_few_entries_) {
+    dense_.a1 = step * middle_;
+    dense_.a2 = (root / 3.0 * step) * (last_ - first_);
+    dense_.a3 = (10.0 / 3.0 * step) * (last_ - 2.0 * middle_ + first_);
+    magnus(dense_);
+    return true;
+  }
+  sparse_.a1 = (step * middle_).sparseView();
+  sparse_.a2 = ((root / 3.0 * step) * (last_ - first_)).sparseView();
+  sparse_.a3 = ((10.0 / 3.0 * step) * (last_ - 2.0 * middle_ + first_)).sparseView();
+  magnus(sparse_);
   return true;
+}
+
+template <class Matrix>
+void TangentFlow::magnus(Series<Matrix>& s) {
+  commutator(s.a1, s.a2, s.c1);
+  s.b = 2.0 * s.a3 + s.c1;
+  commutator(s.a1, s.b, s.c2);
+  s.c2 = s.a2 - s.c2 / 60.0;
+  s.b = -20.0 * s.a1 - s.a3 + s.c1;
+  commutator(s.b, s.c2, s.omega);
+  s.omega /= 240.0;
+  difference_ = (s.omega + s.c1 / 12.0).norm();
+  changes_ = std::max(s.a2.norm() / most_slope, s.a3.norm() / most_bend);
+  s.omega += s.a1 + s.a3 / 12.0;
+  norm_ = s.omega.norm();
 }
 
 void TangentFlow::apply_exponential(MatrixXd& vectors) {
   term_ = vectors;
   const double enough = 0.1 * std::numeric_limits<double>::epsilon();
   for (int k = 1; k < 60; ++k) {
-    product_.noalias() = omega_ * term_;
+    if (has_few_entries_)
+      product_.noalias() = sparse_.omega * term_;
+    else
+      product_.noalias() = dense_.omega * term_;
     term_ = product_ / static_cast<double>(k);
     vectors += term_;
     // Each column by itself: in units of the states one may be many times as large as another.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,8 @@ namespace tchat {
 // Exact, whatever the step, where A is constant. To fourth order the last term is -1/12 [a1, a2]; where the difference
 // of both is too large, or A changes too much for its quadrature, or |h A| is so large that columns would become
 // parallel, the step is halved. All of that is judged in units of the sizes of states, where these are far from 1.
-// Allocates nothing after construction.
+// Allocates nothing after construction, but of many
+// states with few entries in f_x, where the matrices are sparse.
 
 class TangentFlow {
  public:
@@ -47,6 +49,13 @@ class TangentFlow {
   template <class Stretched>
   bool carry(Eigen::MatrixXd& vectors, int field, const DenseOutput& state, double from, double to,
              const Stretched& stretched);
+  /// What Omega is made of, as above.
+  template <class Matrix>
+  struct Series {
+    Matrix a1, a2, a3, c1, c2, b, omega;
+  };
+  template <class Matrix>
+  void magnus(Series<Matrix>& series);
   bool series(int field, const DenseOutput& state, double from, double step);
   bool evaluate(int field, const double* x, Eigen::MatrixXd& out);
   void apply_exponential(Eigen::MatrixXd& vectors);
@@ -55,12 +64,14 @@ class TangentFlow {
 
   const HybridSystem& system_;
   const Eigen::VectorXd& par_;
-  double stretched_ = 0.0;                      // sum of |Omega| since the frame was orthonormal
-  double norm_ = 0.0, difference_ = 0.0;        // of Omega; from fourth order
-  double changes_ = 0.0;                        // of A over the step, as a share of what is allowed
-  Eigen::MatrixXd first_, middle_, last_;       // A
-  Eigen::MatrixXd a1_, a2_, a3_, c1_, c2_, b_;  // as above
-  Eigen::MatrixXd omega_, term_, product_;
+  double stretched_ = 0.0;                 // sum of |Omega| since the frame was orthonormal
+  double norm_ = 0.0, difference_ = 0.0;   // of Omega; from fourth order
+  double changes_ = 0.0;                   // of A over the step, as a share of what is allowed
+  Eigen::MatrixXd first_, middle_, last_;  // A
+  Series<Eigen::MatrixXd> dense_;
+  Series<Eigen::SparseMatrix<double>> sparse_;
+  bool has_few_entries_ = false;  // A, that are not zero: the sparse series is that of this step
+  Eigen::MatrixXd term_, product_;
   Eigen::VectorXd f_;
   Eigen::VectorXd units_;  // powers of two next to the sizes
   bool has_units_ = false;

@@ -31,7 +31,70 @@ struct Breathing {
   }
 };
 
+/// s' = 1, x_i' = cos(s) (x_{i-1} - 2 x_i + x_{i+1}), ends held: few entries of f_x are not zero, which are multiplied
+/// and factorised as such. At x = 0 the derivative is exp(sin(t) L), L = S diag(-4 sin^2(k pi / (2 n + 2))) S.
+struct Chain {
+  static constexpr int links = 40;
+  static constexpr int dimension = links + 1, parameters = 0, fields = 1, events = 1, jumps = 1;
+  template <class T>
+  void field(int, const T* x, const T*, T* f) const {
+    using std::cos;
+    f[0] = T(1.0);
+    for (int i = 1; i <= links; ++i) {
+      f[i] = -2.0 * x[i];
+      if (i > 1) f[i] = f[i] + x[i - 1];
+      if (i < links) f[i] = f[i] + x[i + 1];
+      f[i] = cos(x[0]) * f[i];
+    }
+  }
+  template <class T>
+  T event(int, const T* x, const T*) const {
+    return 1.0 - x[0];
+  }
+  template <class T>
+  void jump(int, const T* x, const T*, T* g) const {
+    for (int i = 0; i < dimension; ++i) g[i] = x[i];
+  }
+  static MatrixXd derivative(double t) {
+    constexpr double pi = 3.14159265358979323846;
+    MatrixXd modes(links, links);
+    VectorXd growth(links);
+    for (int k = 0; k < links; ++k) {
+      growth(k) = std::exp(-4.0 * std::sin(t) * std::pow(std::sin(0.5 * (k + 1) * pi / (links + 1)), 2));
+      for (int i = 0; i < links; ++i)
+        modes(i, k) = std::sqrt(2.0 / (links + 1)) * std::sin((i + 1) * (k + 1) * pi / (links + 1));
+    }
+    MatrixXd whole = MatrixXd::Identity(dimension, dimension);
+    whole.bottomRightCorner(links, links) = modes * growth.asDiagonal() * modes.transpose();
+    return whole;
+  }
+};
+
 }  // namespace
+
+TEST_CASE("many states, few entries: the derivative of a chain in closed form, by CVODES and by the tangent flow") {
+  const HybridSystem& system = system_of<Chain>();
+  const ParameterVector par = parameters({});
+  VectorXd x = VectorXd::Zero(Chain::dimension);
+  const double end = 0.9;
+  for (const IntegrationMethod method : {IntegrationMethod::adams, IntegrationMethod::bdf}) {
+    FlowOptions options;
+    options.relative_tolerance = 1e-12;
+    options.absolute_tolerance = 1e-14;
+    options.method = method;
+    CvodesFlow flow(system, 1, x, par, options);
+    REQUIRE(flow.advance(end) == Progress::end_time);
+    CHECK((flow.jacobian() - Chain::derivative(end)).cwiseAbs().maxCoeff() < 1e-9);
+  }
+  const DenseOutput state = [&](double t) {
+    x(0) = t;
+    return x.data();
+  };
+  TangentFlow tangent(system, par);
+  MatrixXd v = MatrixXd::Identity(Chain::dimension, Chain::dimension);
+  REQUIRE(tangent.carry(v, 1, state, 0.0, end));
+  CHECK((v - Chain::derivative(end)).cwiseAbs().maxCoeff() < 1e-9);
+}
 
 TEST_CASE("tangent flow: growth along a trajectory in closed form, whatever the step") {
   const HybridSystem& system = system_of<Breathing>();
