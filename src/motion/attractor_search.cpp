@@ -69,6 +69,7 @@ void AttractorSearch::add(const HybridSimulation& motion, const SimulatedSegment
   if (points_.size() < points_looked_at) find_ignorable(motion, segment);
   recurrence_.add(segment);
   range_.add(segment);
+  event_ranges_.add(segment);
   rounding_ = rounding_among(recurrence_.tiny_states(), motion, segment);
   recurrence_.take_for_rounding(rounding_);
   last_.push_back(segment);
@@ -78,11 +79,24 @@ void AttractorSearch::add(const HybridSimulation& motion, const SimulatedSegment
   ++events_;
 }
 
+/// States whose range says nothing.
+std::vector<bool> AttractorSearch::left_out() const {
+  std::vector<bool> states = rounding_;
+  if (!last_.empty()) states.resize(static_cast<std::size_t>(last_.back().end.size()), false);
+  for (const Index k : ignorable_) states[static_cast<std::size_t>(k)] = true;
+  return states;
+}
+
+std::string AttractorSearch::unsettled(const HybridSystem& system) const {
+  const std::optional<EventRanges::Change> change = event_ranges_.changing(left_out());
+  if (!change) return "";
+  return fmt::format("{} at {} still changes: it covers {:.2g} of the range that it did before",
+                     system.state_name(static_cast<int>(change->state) + 1),
+                     system.function_name(FunctionKind::event, change->index.event), change->range);
+}
+
 std::string AttractorSearch::unbounded(const HybridSystem& system) const {
-  std::vector<bool> left_out = rounding_;
-  left_out.resize(static_cast<std::size_t>(system.dimension()), false);
-  for (const Index k : ignorable_) left_out[static_cast<std::size_t>(k)] = true;
-  const std::optional<Index> state = range_.growing(left_out);
+  const std::optional<Index> state = range_.growing(left_out());
   if (!state) return "";
   const double growth = range_.growth(*state);
   return fmt::format("the range of {} still grows{}", system.state_name(static_cast<int>(*state) + 1),

@@ -66,8 +66,11 @@ class AttractorSearch {
   /// The range of a state that something depends on still grows: why the motion is on no attractor yet. "" where none
   /// does.
   std::string unbounded(const HybridSystem& system) const;
+  /// The motion still changes, as where it creeps: why it is on no torus yet. "" where it does not.
+  std::string unsettled(const HybridSystem& system) const;
 
  private:
+  std::vector<bool> left_out() const;
   bool try_recurrence(const HybridSimulation& motion, int period);
   bool try_rest(const HybridSimulation& motion);
   bool try_nearby(const HybridSimulation& motion);
@@ -81,6 +84,7 @@ class AttractorSearch {
   SimulationSettings settings_;
   Recurrence recurrence_;
   RangeGrowth range_;
+  EventRanges event_ranges_;
   std::vector<Eigen::VectorXd> points_;  // where functions were looked at
   std::vector<Eigen::Index> ignorable_;
   std::vector<bool> rounding_;         // which states are nothing else

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <limits>
+#include <utility>
 
 #include "base/levels.hpp"
 #include "linear/dense_matrix.hpp"
@@ -246,6 +247,36 @@ std::optional<Eigen::Index> RangeGrowth::growing(const std::vector<bool>& left_o
   return std::nullopt;
 }
 
+void EventRanges::add(const SimulatedSegment& segment) {
+  Window& now = windows_[segment.index].now;
+  now.low = now.events == 0 ? segment.end : VectorXd(now.low.cwiseMin(segment.end));
+  now.high = now.events == 0 ? segment.end : VectorXd(now.high.cwiseMax(segment.end));
+  ++now.events;
+  const VectorXd size = segment.low.cwiseAbs().cwiseMax(segment.high.cwiseAbs());
+  sizes_ = events_++ == 0 ? size : VectorXd(sizes_.cwiseMax(size));
+  if ((events_ & (events_ - 1)) != 0) return;
+  for (auto& [index, windows] : windows_) {
+    windows.before = std::exchange(windows.last, std::move(windows.now));
+    windows.now = {};
+  }
+}
+
+std::optional<EventRanges::Change> EventRanges::changing(const std::vector<bool>& left_out) const {
+  constexpr long least_events = 32;
+  constexpr double same = 0.8, moved = 0.2, least = level::located;  // of a range; of a state
+  for (const auto& [index, windows] : windows_) {
+    const auto& [now, last, before] = windows;
+    if (before.events < least_events || last.events < least_events) continue;
+    for (Eigen::Index i = 0; i < last.low.size(); ++i) {
+      const double range = last.high(i) - last.low(i), was = before.high(i) - before.low(i);
+      if (is_ignored(left_out, i) || !(std::max(range, was) > least * sizes_(i))) continue;
+      const double shift = 0.5 * std::abs(last.low(i) + last.high(i) - before.low(i) - before.high(i));
+      if (range < same * was || was < same * range || shift > moved * was) return Change{index, i, range / was};
+    }
+  }
+  return std::nullopt;
+}
+
 std::vector<bool> ignorable_states(const HybridSystem& system, const std::vector<VectorXd>& points,
                                    const VectorXd& par) {
   std::vector<bool> flags(static_cast<std::size_t>(system.dimension()), !points.empty());
@@ -330,15 +361,24 @@ std::optional<VectorXd> approached_equilibrium(const HybridSystem& system, const
   const EventAt at = event_at(system, index.event, rest->data(), par.data());
   if (!(std::abs(at.h) <= at_surface * at.scale(rest->data(), sizes))) return std::nullopt;
   std::vector<double> falling;  // the last distances, as long as each is smaller than the one before it, or nothing
+  VectorXd first;               // the first of them, of each state in sizes
+  VectorXd last(sizes.size());
   for (const VectorXd& state : states) {
     VectorXd d = state - *rest;
     for (const Index k : ignorable) d(k) = 0.0;
     const double distance = length_in_sizes(d, sizes);
+    last = d.cwiseAbs().cwiseQuotient(sizes.unaryExpr(&size_for_tolerance));
     if (!falling.empty() && !(distance < falling.back()) && !(distance <= there)) falling.clear();
+    if (falling.empty()) first = last;
     falling.push_back(distance);
   }
   if (falling.size() < std::max(least_states, least)) return std::nullopt;
-  return falling.back() <= there || fall_to_zero(falling) ? rest : std::nullopt;
+  if (falling.back() <= there) return rest;
+  // A state that stays where it is comes to no rest elsewhere, however others come near.
+  Index farthest = 0;
+  last.maxCoeff(&farthest);
+  const bool falls = last(farthest) <= (1.0 - least_fall) * first(farthest);
+  return falls && fall_to_zero(falling) ? rest : std::nullopt;
 }
 
 }  // namespace tchat

@@ -153,6 +153,33 @@ class RangeGrowth {
   long events_ = 0;
 };
 
+/// Does a motion still change? On a torus the states at the events of one kind cover the same range in the last half of
+/// the motion as in the quarter before it; where a motion creeps past a fold, or comes to an end as slowly as 1/t, they
+/// cover another one.
+class EventRanges {
+ public:
+  void add(const SimulatedSegment& segment);
+  struct Change {
+    IndexVector index;
+    Eigen::Index state;  ///< from 0
+    double range;        ///< in the last half, in ranges of the quarter before
+  };
+  /// Where the range has become smaller or larger by a fifth, or has moved by a fifth; in no state of `left_out`.
+  std::optional<Change> changing(const std::vector<bool>& left_out) const;
+
+ private:
+  struct Window {
+    Eigen::VectorXd low, high;
+    long events = 0;
+  };
+  struct Windows {
+    Window now, last, before;  // since 2^k events, and the two whole ones before
+  };
+  std::map<IndexVector, Windows> windows_;
+  Eigen::VectorXd sizes_;  // of the states
+  long events_ = 0;
+};
+
 /// Which states nothing depends on: zero columns in f_x and h_x, and a unit column in g_x, of all functions at
 /// `points`.
 std::vector<bool> ignorable_states(const HybridSystem& system, const std::vector<Eigen::VectorXd>& points,

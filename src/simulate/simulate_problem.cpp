@@ -242,6 +242,8 @@ std::string exponents_of(const SimulationRequest& request, const SimulationResul
                     spectrum.events, request.accuracy);
   MotionEvidence evidence{search.orbit(), ""};
   if (!evidence.orbit) evidence.doubt = search.unbounded(system);
+  const bool may_be_torus = signs_of(spectrum).positive == 0 && !keeps_volumes(spectrum, system.dimension());
+  if (!evidence.orbit && evidence.doubt.empty() && may_be_torus) evidence.doubt = search.unsettled(system);
   if (!evidence.orbit && evidence.doubt.empty())
     evidence.doubt = doubt_of_chaos(simulation, last, exponents, spectrum, request.section, settings);
   return spectrum_text(system, spectrum, request.section, evidence) + remark;

@@ -158,6 +158,7 @@ class SampleRun {
       }
       std::string doubt = search_.doubt();
       if (doubt.empty()) doubt = search_.unbounded(system_);
+      if (doubt.empty() && kind == AttractorKind::quasi_periodic) doubt = search_.unsettled(system_);
       bool is_told = tells && doubt.empty() && !search_.is_near_unstable_orbit();
       if (is_told && kind == AttractorKind::chaotic) {
         doubt = doubt_of_chaos(simulation, end, exponents, spectrum);

@@ -268,3 +268,54 @@ TEST_CASE("the signs of exponents, that along the flow left out") {
   CHECK(kind({0.0}, {0.01}, {0}) == AttractorKind::none);  // one exponent does not tell
   CHECK(kind({NAN, 0.0}, {INFINITY, 0.01}, {1}) == AttractorKind::none);
 }
+
+namespace {
+
+/// A ball in a rectangle of width p0 and height 1.
+struct Billiard {
+  static constexpr int dimension = 4, parameters = 1, fields = 1, events = 4, jumps = 2;
+  template <class T>
+  void field(int, const T* x, const T*, T* f) const {
+    f[0] = x[2], f[1] = x[3], f[2] = T(0.0), f[3] = T(0.0);
+  }
+  template <class T>
+  T event(int j, const T* x, const T* p) const {
+    return j == 1 ? T(p[0] - x[0]) : j == 2 ? T(x[0]) : j == 3 ? T(1.0 - x[1]) : T(x[1]);
+  }
+  template <class T>
+  void jump(int k, const T* x, const T*, T* g) const {
+    g[0] = x[0], g[1] = x[1], g[2] = k == 1 ? T(-x[2]) : T(x[2]), g[3] = k == 2 ? T(-x[3]) : T(x[3]);
+  }
+};
+
+SimulatedSegment at_event(double x) {
+  SimulatedSegment segment;
+  segment.index = {1, 1, 1};
+  segment.end = segment.low = segment.high = Eigen::VectorXd::Constant(1, x);
+  return segment;
+}
+
+}  // namespace
+
+TEST_CASE("a ball that flies about comes to no rest, however its places at one wall lie") {
+  // Rest is everywhere where nothing moves, and places at the roof come near one of them by chance.
+  const Simulated flight = simulate(always<Billiard>({{1, 1, 1}, {1, 2, 1}, {1, 3, 2}, {1, 4, 2}}),
+                                    Eigen::Vector4d(0.1, 0.2, 1.0, 0.46274973070065073),
+                                    parameters({1.8256371116848349}), {}, settings_for_tests(1e-10));
+  CHECK_FALSE(flight.result.equilibrium);
+}
+
+TEST_CASE("states at events that creep change their range, those on a circle do not") {
+  EventRanges slow, passing, turning;
+  for (int k = 1; k <= 600; ++k) {
+    slow.add(at_event(1.0 / k));
+    passing.add(at_event(std::atan(0.01 * (k - 300))));  // past a ghost
+    turning.add(at_event(std::cos(2.0 * k)));
+    if (k < 256) continue;
+    REQUIRE(slow.changing({false}));
+    CHECK(slow.changing({false})->range == Approx(0.5).epsilon(0.05));
+    CHECK(passing.changing({false}));
+    CHECK_FALSE(turning.changing({false}));
+    CHECK_FALSE(slow.changing({true}));
+  }
+}
