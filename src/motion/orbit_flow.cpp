@@ -241,7 +241,7 @@ PeriodicOrbit shoot(const HybridSystem& system, const Signature& signature, cons
   const VectorXd sizes = has_sizes ? options.flow.sizes : VectorXd(VectorXd::Ones(guess.size()));
   PeriodicOrbit orbit;
   orbit.start = guess;
-  constexpr double next_to_orbit = 1e-4;
+  constexpr double next_to_orbit = level::five_digits;
   constexpr Eigen::Index many_states = 24;
   double last_step = INFINITY, step_before = INFINITY;
   FlowOptions flow = options.flow;
