@@ -94,14 +94,18 @@ BlockFile::BlockFile(std::string path) : path_(std::move(path)) {
   if (descriptor_ < 0) fail("cannot be opened for writing", errno);
 }
 
-BlockFile::BlockFile(int descriptor, std::string path) : path_(std::move(path)), descriptor_(descriptor) {}
+BlockFile::BlockFile(int descriptor, std::string path, bool is_temporary)
+    : path_(std::move(path)), descriptor_(descriptor), is_temporary_(is_temporary) {}
 
 BlockFile::BlockFile(BlockFile&& other) noexcept
-    : path_(std::move(other.path_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
+    : path_(std::move(other.path_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      is_temporary_(other.is_temporary_) {}
 
 BlockFile& BlockFile::operator=(BlockFile&& other) noexcept {
   std::swap(path_, other.path_);
   std::swap(descriptor_, other.descriptor_);
+  std::swap(is_temporary_, other.is_temporary_);
   return *this;
 }
 
@@ -113,6 +117,7 @@ void BlockFile::write(std::string_view blocks) {
   if (blocks.empty()) return;
   const Outcome outcome = append_or_cut(descriptor_, blocks);
   if (outcome.error == 0) return;
+  if (is_temporary_) fail("cannot be written; what had this name before stays", outcome.error);
   fail(outcome.whole ? "cannot be written; it holds everything up to the last complete block"
                      : "cannot be written; its last block is not complete",
        outcome.error);
@@ -227,7 +232,7 @@ TemporaryFile::TemporaryFile(std::string path) : path_(std::move(path)) {
     return descriptor >= 0;
   });
   if (name_.empty()) refuse(path_, "cannot be opened for writing", std::strerror(errno));
-  file_ = BlockFile(descriptor, path_);
+  file_ = BlockFile(descriptor, path_, true);
   held_ = ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
 }
 
@@ -245,6 +250,7 @@ BlockFile TemporaryFile::put_in_place() {
   if (!is_empty(held_)) sync_file(held_, path_);
   if (std::rename(name_.c_str(), path_.c_str()) != 0) refuse(path_, "cannot be written", std::strerror(errno));
   name_.clear();
+  file_.is_in_place();
   ::flock(held_, LOCK_UN);
   return std::move(file_);
 }

@@ -32,8 +32,8 @@ class BlockFile {
   BlockFile() = default;
   /// Opens or creates the file, to add to its end. Throws ComputationError naming it when that fails.
   explicit BlockFile(std::string path);
-  /// Takes over an open file; `path` is its name.
-  BlockFile(int descriptor, std::string path);
+  /// Takes over an open file; `path` is its name, or the one that it is to have.
+  BlockFile(int descriptor, std::string path, bool is_temporary);
   BlockFile(const BlockFile&) = delete;
   BlockFile& operator=(const BlockFile&) = delete;
   BlockFile(BlockFile&& other) noexcept;
@@ -42,6 +42,8 @@ class BlockFile {
   ~BlockFile();
 
   bool is_open() const { return descriptor_ >= 0; }
+  /// It has its name now.
+  void is_in_place() { is_temporary_ = false; }
   const std::string& path() const { return path_; }
 
   /// Appends whole blocks. When only a part can be stored (disk full) the part is removed again; throws
@@ -65,6 +67,7 @@ class BlockFile {
 
   std::string path_;
   int descriptor_ = -1;
+  bool is_temporary_ = false;
 };
 
 // A new file beside the one that it is to become, under a name that nobody can foresee: .NAME.XXXXXX.new. It is

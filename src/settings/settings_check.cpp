@@ -22,13 +22,18 @@ class SettingsCheck {
  public:
   SettingsCheck(const RunSettings& settings, const PlaceOf& place) : settings_(settings), place_(place) {}
 
+  /// The number, or the name that stands for it until the problem is known.
+  std::string given_text(int k) const {
+    return is_name(settings_, k) ? settings_.names[static_cast<std::size_t>(k - first_name)].text : std::to_string(k);
+  }
+
   void listed_parameters() const {
     const std::vector<int>& list = settings_.free_parameters;
     if (list.empty()) refuse_constant("ICP", "ICP", "an empty list", "at least one parameter");
     for (auto k = list.begin(); k != list.end(); ++k)
       if (std::find(list.begin(), k, *k) != k)
         refuse_constant("ICP", fmt::format("ICP({})", k - list.begin() + 1),
-                        fmt::format("{} twice", in_quotes(std::to_string(*k))), "each parameter once");
+                        fmt::format("{} twice", in_quotes(given_text(*k))), "each parameter once");
   }
 
   void free_parameters() const {

@@ -61,6 +61,16 @@ TEST_CASE("The part of a block that still fitted is taken back", "[output]") {
   CHECK(folder.read("q.x") == std::string(1000, 'a') + "\nc\n");
 }
 
+TEST_CASE("A file that is to replace another one, on a full disk: the other one stays, and is said to", "[output]") {
+  const test_support::TemporaryFolder folder;
+  folder.write("x.trajectory", "old\n");
+  ReplacedFile file(folder.file("x.trajectory"));
+  const test_support::FileSizeLimit limit(1500);
+  const std::string message = message_of<ComputationError>([&] { file.write(std::string(2000, 'b')); });
+  CHECK_THAT(message, Contains("x.trajectory") && Contains("had this name before stays"));
+  CHECK(folder.read("x.trajectory") == "old\n");
+}
+
 TEST_CASE("A file that cannot be opened", "[output]") {
   const test_support::TemporaryFolder folder;
   const auto open = [&] { BlockFile(folder.file("none/p.x")); };

@@ -227,6 +227,7 @@ TEST_CASE("Malformed overrides", "[constants]") {
       {"DSMX=5", {"did you mean: DSMAX"}},
       {"DS=0", {"command line: DS (", "found '0'"}},
       {"ICP=1,1", {"command line: ICP(2) (", "twice"}},
+      {"ICP=[mu,mu]", {"command line: ICP(2) (", "found 'mu' twice"}},
       {"ICP=1,63", {"command line: ICP(2) (", "found '63'"}},
       {"ICP(1)=2", {"command line: ICP (", "whole value"}},
       {"NICP=2", {"command line: NICP (", "found '2'", "allowed: 3, the number of values of ICP"}},
