@@ -285,8 +285,11 @@ OrthonormalFrame::OrthonormalFrame(Index n, Index columns)
 }
 
 void OrthonormalFrame::orthonormalise(bool may_vanish) {
+  const bool has_units = units_.size() > 0;
+  if (has_units) v_ = units_.cwiseInverse().asDiagonal() * v_;
   const double size = v_.cwiseAbs().maxCoeff();
   qr_.apply(v_);
+  if (has_units) v_ = units_.asDiagonal() * v_;
   for (Index j = 0; j < v_.cols(); ++j) {
     const double r = qr_.lengths()(j);
     const bool vanishes = r <= vanishing * size;
@@ -295,6 +298,15 @@ void OrthonormalFrame::orthonormalise(bool may_vanish) {
     else
       growth_(j) += std::log(vanishes ? vanishing * size : r);
   }
+}
+
+void OrthonormalFrame::use_units(const VectorXd& units) {
+  if (units.size() == units_.size() && units == units_) return;
+  orthonormalise(false);
+  const VectorXd growth = growth_;
+  units_ = units;
+  orthonormalise(false);
+  growth_ = growth;
 }
 
 const VectorXd& OrthonormalFrame::take_growth() {

@@ -132,11 +132,15 @@ class OrthonormalFrame {
   void orthonormalise(bool may_vanish = true);
   /// ln |R_jj| added since the last call.
   const Eigen::VectorXd& take_growth();
+  /// Of states, n: from now on the frame is orthonormal in these, where components differ by many powers of ten. What
+  /// has grown so far is counted, the change itself is not.
+  void use_units(const Eigen::VectorXd& units);
 
  private:
   Eigen::MatrixXd v_;
   Orthonormalisation qr_;
   Eigen::VectorXd growth_, taken_;
+  Eigen::VectorXd units_;  // none: 1
 };
 
 /// For maps: one matrix after the other, each one piece of the motion.

@@ -95,6 +95,7 @@ struct LyapunovAccumulator::Implementation {
   double duration_of_event = 0.0;
 
   VectorXd sizes;                // of the states so far; none: it has not begun
+  VectorXd units;                // of the states; none: 1
   std::vector<Index> ignorable;  // states that nothing depends on
   bool has_flow = false;         // the direction along the flow is among the known ones
   Index known = -1;              // first columns of the frame, whose directions are known; -1: it has not begun
@@ -155,6 +156,7 @@ struct LyapunovAccumulator::Implementation {
     const Index columns = std::min(most_exponents(system, settings), wanted + known);
     known = std::min(known, columns);
     frame = OrthonormalFrame(n, columns);
+    use_sizes();
     by_event = by_time = GrowthSeries(columns);
     growth_of_event = growth_of_tick = VectorXd::Zero(columns);
     restore_known(field, start);
@@ -162,13 +164,29 @@ struct LyapunovAccumulator::Implementation {
     frame.take_growth();
   }
 
+  /// Directions are compared in units of the states, where their sizes are far from 1.
+  void use_sizes() {
+    tangent.use_sizes(sizes);
+    if (are_usual(sizes)) return;
+    units = units_of(sizes.unaryExpr(&size_for_tolerance));
+    frame.use_units(units);
+  }
+
+  double length(const VectorXd& v) const { return units.size() == 0 ? v.norm() : v.cwiseQuotient(units).norm(); }
+
+  /// |h_x f| is next to nothing against |h_x| |f|.
+  bool is_hardly_met(const EventAt& at) const {
+    const double gradient = units.size() == 0 ? at.gradient.norm() : at.gradient.transpose().cwiseProduct(units).norm();
+    return std::abs(at.rate()) < hardly_transversal * gradient * length(at.f);
+  }
+
   /// f without the states that nothing depends on, of unit length; empty where nothing is left.
   VectorXd flow_direction(int field, const double* x) const {
     VectorXd f(system.dimension());
     system.value(FunctionKind::field, field, x, par.data(), f.data());
-    const double whole = f.norm();
+    const double whole = length(f);
     for (const Index k : ignorable) f(k) = 0.0;
-    const double size = f.norm();
+    const double size = length(f);
     if (!(size > level::negligible * whole) || !(size > least_speed * fastest)) return {};
     return f / size;
   }
@@ -176,7 +194,8 @@ struct LyapunovAccumulator::Implementation {
   /// Rounding and chaos turn known directions away from where they are.
   void restore_known(int field, const double* x) {
     for (std::size_t k = 0; k < ignorable.size() && static_cast<Index>(k) < known; ++k)
-      frame.vectors().col(static_cast<Index>(k)) = VectorXd::Unit(system.dimension(), ignorable[k]);
+      frame.vectors().col(static_cast<Index>(k)) =
+          (units.size() == 0 ? 1.0 : units(ignorable[k])) * VectorXd::Unit(system.dimension(), ignorable[k]);
     if (!has_flow || static_cast<Index>(ignorable.size()) >= known) return;
     const VectorXd f = flow_direction(field, x);
     if (f.size() > 0) frame.vectors().col(static_cast<Index>(ignorable.size())) = f;
@@ -186,11 +205,9 @@ struct LyapunovAccumulator::Implementation {
   Index structural() const { return has_flow && is_resting ? known - 1 : known; }
 
   void begin_segment(int field, const double* start) {
-    if (known < 0) set_up(field, start);
-    if (sizes.size() == 0) {
+    if (sizes.size() == 0)
       sizes = sizes_at(system, field, Eigen::Map<const VectorXd>(start, system.dimension()), par);
-      tangent.use_sizes(sizes);
-    }
+    if (known < 0) set_up(field, start);
     is_in_segment = true;
     carried = 0.0;
     if (waiting) apply_saltation(field);
@@ -222,7 +239,7 @@ struct LyapunovAccumulator::Implementation {
   void wait_for_field(const SimulatedSegment& segment) {
     const EventAt at = event_at(system, segment.index.event, segment.mode.field(), segment.end.data(), par.data());
     Saltation event{jump_at(system, segment.index.jump, segment.end.data(), par.data()).derivative, at, segment.after,
-                    std::abs(at.rate()) < hardly_transversal * at.sizes(), ""};
+                    is_hardly_met(at), ""};
     const auto tell = [&](FunctionKind kind, int index) {
       if (!has_finite_derivatives(system, kind, index, segment.end.data(), par.data()))
         event.without_derivatives = no_finite_derivatives(system, kind, index, segment.end);
@@ -254,8 +271,8 @@ struct LyapunovAccumulator::Implementation {
     VectorXd f(system.dimension());
     system.value(FunctionKind::field, field, x, par.data(), f.data());
     for (const Index k : ignorable) f(k) = 0.0;
-    fastest = std::max(fastest, f.norm());
-    is_resting = f.norm() <= least_speed * fastest;
+    fastest = std::max(fastest, length(f));
+    is_resting = length(f) <= least_speed * fastest;
   }
 
   void carry_with_ticks(int field, const DenseOutput& state, double from, double to) {
@@ -287,7 +304,7 @@ struct LyapunovAccumulator::Implementation {
 
   void cross_section(int field, const double* x) {
     const EventAt at = event_at(system, settings.section, field, x, par.data());
-    const bool is_tangential = std::abs(at.rate()) < hardly_transversal * at.sizes();
+    const bool is_tangential = is_hardly_met(at);
     MatrixXd& v = frame.vectors();
     const MatrixXd moved = at.project(v);
     if (moved.allFinite()) v = moved;
@@ -330,7 +347,7 @@ struct LyapunovAccumulator::Implementation {
     if (carried == 0.0 && segment.duration > 0.0) integrate(segment);
     is_in_segment = false;
     sizes = sizes.cwiseMax(segment.low.cwiseAbs()).cwiseMax(segment.high.cwiseAbs());
-    tangent.use_sizes(sizes);
+    use_sizes();
     time += segment.duration;
     duration_of_event += segment.duration;
     if (segment.ended_by == SegmentEnd::event) end_by_event(segment);

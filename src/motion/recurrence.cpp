@@ -236,7 +236,8 @@ double RangeGrowth::growth(Eigen::Index state) const {
 
 std::optional<Eigen::Index> RangeGrowth::growing(const std::vector<bool>& left_out) const {
   constexpr double share = 0.25, least = level::located;  // of a range; of the state
-  if (events_ < 2) return std::nullopt;
+  constexpr long least_events = 64;
+  if (events_ < least_events) return std::nullopt;
   const Extremes& then = before();
   for (Eigen::Index i = 0; i < now_.low.size(); ++i) {
     const double range = now_.high(i) - now_.low(i);
@@ -307,6 +308,16 @@ std::optional<VectorXd> attracting_equilibrium(const HybridSystem& system, int f
   return attracts ? std::optional(found->state) : std::nullopt;
 }
 
+/// All eigenvalues of f_x, but those of states that nothing depends on, have negative real parts, not rounding of zero.
+bool attracts_for_certain(const HybridSystem& system, int field, const VectorXd& x, const VectorXd& par,
+                          const std::vector<Index>& ignorable) {
+  VectorXd f(x.size());
+  MatrixXd fx(x.size(), x.size());
+  double none = 0.0;
+  system.first(FunctionKind::field, field, x.data(), par.data(), {}, f.data(), fx.data(), &none);
+  return (eigenvalues(fx).real().array() < -rounding * fx.norm()).count() >= x.size() - std::ssize(ignorable);
+}
+
 /// Of falling distances.
 bool fall_to_zero(const std::vector<double>& distances) {
   const std::size_t space = (distances.size() - 1) / 2, last = distances.size() - 1;
@@ -346,8 +357,13 @@ std::optional<VectorXd> reached_equilibrium(const HybridSystem& system, const Si
   for (const Index k : ignorable) f(k) = 0.0;
   // One that has been rounding of zero all along may do what it likes.
   const VectorXd sizes_here = sizes.cwiseMax(sizes_in(system, {&last, 1}, par).sizes());
-  if (!(length_in_sizes(f * last.duration, sizes_here) <= no_movement)) return std::nullopt;
-  return attracting_equilibrium(system, field, last.end, par, ignorable, sizes_here);
+  const std::optional<VectorXd> rest = attracting_equilibrium(system, field, last.end, par, ignorable, sizes_here);
+  if (!rest || length_in_sizes(f * last.duration, sizes_here) <= no_movement) return rest;
+  // The longer the wait, the more the integration's noise moves it.
+  VectorXd distance = last.end - *rest;
+  for (const Index k : ignorable) distance(k) = 0.0;
+  const bool is_there = length_in_sizes(distance, sizes_here) <= level::located;
+  return is_there && attracts_for_certain(system, field, *rest, par, ignorable) ? rest : std::nullopt;
 }
 
 std::optional<VectorXd> approached_equilibrium(const HybridSystem& system, const IndexVector& index,

@@ -10,8 +10,10 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double far_away = 1e6;    // in sizes: a motion that is there has escaped
-constexpr double far_at_end = 1e3;  // the same where it has no event any more, and goes on outwards
+// In sizes. A motion may begin 1e-12 beside an unstable equilibrium, or with rounding alone, and settle yet.
+constexpr double far_away = 1e18;
+constexpr double far_at_failure = 1e6;  // where the integration fails there
+constexpr double far_at_end = 1e3;      // where it has no event any more, and goes on outwards
 constexpr long of_start = 16;       // events in which a motion shows its sizes
 constexpr double at_largest = 0.99;
 
@@ -52,7 +54,7 @@ MotionEnd MotionJudge::end_of(const HybridSimulation& simulation, const Simulate
     case SegmentEnd::sticks:
       return MotionEnd::accumulates;
     case SegmentEnd::failed:
-      return is_beyond(extremes(segment), far_away) ? MotionEnd::escapes : MotionEnd::failed;
+      return is_beyond(extremes(segment), far_at_failure) ? MotionEnd::escapes : MotionEnd::failed;
     case SegmentEnd::no_event:
       break;
   }

@@ -193,9 +193,10 @@ std::string why_it_ended(const HybridSystem& system, const SimulationResult& res
       std::string watched;
       for (const int event : last.mode.terminal_events())
         watched += fmt::format("{}{}", watched.empty() ? "" : ", ", event_name(system, event));
+      if (result.equilibrium) return fmt::format("The end: {}. Watched: {}.\n", last.message, watched);
       return fmt::format(
-          "The end: {}. Watched: {}. The last state is x = {}.\nIt may be at rest, or wait longer (--wait), start "
-          "elsewhere (--state), watch other events (--mode, --signature).\n",
+          "The end: {}. Watched: {}. The last state is x = {}.\nWait longer (--wait), start elsewhere (--state), watch "
+          "other events (--mode, --signature), or end segments\nby an event that the motion meets, as a section.\n",
           last.message, watched, state_text(last.end));
     }
     default:
@@ -361,7 +362,12 @@ std::string no_orbit_text(const HybridSystem& system, const SimulationResult& re
         return fmt::format("Undecided after {} events: {}. A longer simulation decides (--transient-events).\n",
                            result.events, search.doubt());
       if (const std::string why = search.unbounded(system); !why.empty())
-        return fmt::format("No attractor after {} events: {}.\n", result.events, why) + missed_text(system, result);
+        return fmt::format("No attractor yet after {} events: {}. A longer simulation (--transient-events) shows more.\n",
+                           result.events, why) +
+               missed_text(system, result);
+      if (result.events == result.dropped)
+        return "No event in this time, and a periodic orbit is looked for at events: end segments by one that the motion "
+               "meets, as a section.\n";
       if (const std::optional<int> period = search.repeats_after())
         return fmt::format(
             "The last events repeat, within {:g} of the orbit's range, after {}, but Newton's method finds no "

