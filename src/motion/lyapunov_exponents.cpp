@@ -205,8 +205,7 @@ struct LyapunovAccumulator::Implementation {
   Index structural() const { return has_flow && is_resting ? known - 1 : known; }
 
   void begin_segment(int field, const double* start) {
-    if (sizes.size() == 0)
-      sizes = sizes_at(system, field, Eigen::Map<const VectorXd>(start, system.dimension()), par);
+    if (sizes.size() == 0) sizes = sizes_at(system, field, Eigen::Map<const VectorXd>(start, system.dimension()), par);
     if (known < 0) set_up(field, start);
     is_in_segment = true;
     carried = 0.0;

@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 constexpr double far_away = 1e18;
 constexpr double far_at_failure = 1e6;  // where the integration fails there
 constexpr double far_at_end = 1e3;      // where it has no event any more, and goes on outwards
-constexpr long of_start = 16;       // events in which a motion shows its sizes
+constexpr long of_start = 16;           // events in which a motion shows its sizes
 constexpr double at_largest = 0.99;
 
 VectorXd extremes(const SimulatedSegment& segment) { return segment.low.cwiseAbs().cwiseMax(segment.high.cwiseAbs()); }

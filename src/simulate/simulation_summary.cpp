@@ -362,11 +362,13 @@ std::string no_orbit_text(const HybridSystem& system, const SimulationResult& re
         return fmt::format("Undecided after {} events: {}. A longer simulation decides (--transient-events).\n",
                            result.events, search.doubt());
       if (const std::string why = search.unbounded(system); !why.empty())
-        return fmt::format("No attractor yet after {} events: {}. A longer simulation (--transient-events) shows more.\n",
-                           result.events, why) +
+        return fmt::format(
+                   "No attractor yet after {} events: {}. A longer simulation (--transient-events) shows more.\n",
+                   result.events, why) +
                missed_text(system, result);
       if (result.events == result.dropped)
-        return "No event in this time, and a periodic orbit is looked for at events: end segments by one that the motion "
+        return "No event in this time, and a periodic orbit is looked for at events: end segments by one that the "
+               "motion "
                "meets, as a section.\n";
       if (const std::optional<int> period = search.repeats_after())
         return fmt::format(
