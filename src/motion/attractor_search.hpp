@@ -66,7 +66,8 @@ class AttractorSearch {
   /// The range of a state that something depends on still grows: why the motion is on no attractor yet. "" where none
   /// does.
   std::string unbounded(const HybridSystem& system) const;
-  /// The motion still changes, as where it creeps: why it is on no torus yet. "" where it does not.
+  /// Why the motion cannot be on a torus yet: at some event a state covers another range than before (EventRanges).
+  /// "" if none does.
   std::string unsettled(const HybridSystem& system) const;
 
  private:

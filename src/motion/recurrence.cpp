@@ -298,24 +298,21 @@ constexpr double there = level::differences;   // distance that integration cann
 constexpr double at_surface = level::located;  // the same from the surface of an event
 constexpr double least_fall = 1e-3;            // of distances, relative to the last one
 
+/// An equilibrium, and the real parts of the eigenvalues of its f_x in units of |f_x|, n.
+struct Rest {
+  VectorXd state, growth;
+};
+
 /// An equilibrium whose f_x has no eigenvalue with a positive real part.
-std::optional<VectorXd> attracting_equilibrium(const HybridSystem& system, int field, const VectorXd& near,
-                                               const VectorXd& par, const std::vector<Index>& ignorable,
-                                               const VectorXd& sizes) {
+std::optional<Rest> attracting_equilibrium(const HybridSystem& system, int field, const VectorXd& near,
+                                           const VectorXd& par, const std::vector<Index>& ignorable,
+                                           const VectorXd& sizes) {
   const std::optional<NearbyEquilibrium> found = find_equilibrium(system, field, near, par.data(), ignorable, sizes);
   if (!found) return std::nullopt;
-  const bool attracts = (eigenvalues(found->jacobian).real().array() <= rounding * found->jacobian.norm()).all();
-  return attracts ? std::optional(found->state) : std::nullopt;
-}
-
-/// All eigenvalues of f_x, but those of states that nothing depends on, have negative real parts, not rounding of zero.
-bool attracts_for_certain(const HybridSystem& system, int field, const VectorXd& x, const VectorXd& par,
-                          const std::vector<Index>& ignorable) {
-  VectorXd f(x.size());
-  MatrixXd fx(x.size(), x.size());
-  double none = 0.0;
-  system.first(FunctionKind::field, field, x.data(), par.data(), {}, f.data(), fx.data(), &none);
-  return (eigenvalues(fx).real().array() < -rounding * fx.norm()).count() >= x.size() - std::ssize(ignorable);
+  const double size = found->jacobian.norm();
+  const VectorXd growth = eigenvalues(found->jacobian).real() / (size > 0.0 ? size : 1.0);
+  if ((growth.array() > rounding).any()) return std::nullopt;
+  return Rest{found->state, growth};
 }
 
 /// Of falling distances.
@@ -357,13 +354,15 @@ std::optional<VectorXd> reached_equilibrium(const HybridSystem& system, const Si
   for (const Index k : ignorable) f(k) = 0.0;
   // One that has been rounding of zero all along may do what it likes.
   const VectorXd sizes_here = sizes.cwiseMax(sizes_in(system, {&last, 1}, par).sizes());
-  const std::optional<VectorXd> rest = attracting_equilibrium(system, field, last.end, par, ignorable, sizes_here);
-  if (!rest || length_in_sizes(f * last.duration, sizes_here) <= no_movement) return rest;
+  const std::optional<Rest> rest = attracting_equilibrium(system, field, last.end, par, ignorable, sizes_here);
+  if (!rest) return std::nullopt;
+  if (length_in_sizes(f * last.duration, sizes_here) <= no_movement) return rest->state;
   // The longer the wait, the more the integration's noise moves it.
-  VectorXd distance = last.end - *rest;
+  VectorXd distance = last.end - rest->state;
   for (const Index k : ignorable) distance(k) = 0.0;
   const bool is_there = length_in_sizes(distance, sizes_here) <= level::located;
-  return is_there && attracts_for_certain(system, field, *rest, par, ignorable) ? rest : std::nullopt;
+  const bool attracts = (rest->growth.array() < -rounding).count() >= last.end.size() - std::ssize(ignorable);
+  return is_there && attracts ? std::optional(rest->state) : std::nullopt;
 }
 
 std::optional<VectorXd> approached_equilibrium(const HybridSystem& system, const IndexVector& index,
@@ -371,16 +370,16 @@ std::optional<VectorXd> approached_equilibrium(const HybridSystem& system, const
                                                const VectorXd& par, const std::vector<Index>& ignorable,
                                                const VectorXd& sizes) {
   if (states.size() < least_states) return std::nullopt;
-  const std::optional<VectorXd> rest =
-      attracting_equilibrium(system, index.field, states.back(), par, ignorable, sizes);
-  if (!rest) return std::nullopt;
-  const EventAt at = event_at(system, index.event, rest->data(), par.data());
-  if (!(std::abs(at.h) <= at_surface * at.scale(rest->data(), sizes))) return std::nullopt;
+  const std::optional<Rest> found = attracting_equilibrium(system, index.field, states.back(), par, ignorable, sizes);
+  if (!found) return std::nullopt;
+  const VectorXd& rest = found->state;
+  const EventAt at = event_at(system, index.event, rest.data(), par.data());
+  if (!(std::abs(at.h) <= at_surface * at.scale(rest.data(), sizes))) return std::nullopt;
   std::vector<double> falling;  // the last distances, as long as each is smaller than the one before it, or nothing
   VectorXd first;               // the first of them, of each state in sizes
   VectorXd last(sizes.size());
   for (const VectorXd& state : states) {
-    VectorXd d = state - *rest;
+    VectorXd d = state - rest;
     for (const Index k : ignorable) d(k) = 0.0;
     const double distance = length_in_sizes(d, sizes);
     last = d.cwiseAbs().cwiseQuotient(sizes.unaryExpr(&size_for_tolerance));
@@ -394,7 +393,7 @@ std::optional<VectorXd> approached_equilibrium(const HybridSystem& system, const
   Index farthest = 0;
   last.maxCoeff(&farthest);
   const bool falls = last(farthest) <= (1.0 - least_fall) * first(farthest);
-  return falls && fall_to_zero(falling) ? rest : std::nullopt;
+  return falls && fall_to_zero(falling) ? std::optional(rest) : std::nullopt;
 }
 
 }  // namespace tchat

@@ -186,6 +186,7 @@ std::string doubt_of_chaos(HybridSimulation& simulation, SimulatedSegment last, 
     last = simulation.next(std::numeric_limits<double>::max());
     exponents.pass(last);
   }
+  if (last.ended_by == SegmentEnd::interrupted) return "the simulation was interrupted";
   if (last.ended_by != SegmentEnd::event) return "the motion ends";
   const double unit = section == 0 ? 1.0 : static_cast<double>(spectrum.events) / spectrum.time;
   return chaos_evidence(simulation, last.end, exponents.growing_direction(), unit * spectrum.exponents.maxCoeff(),

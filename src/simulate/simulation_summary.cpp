@@ -367,9 +367,9 @@ std::string no_orbit_text(const HybridSystem& system, const SimulationResult& re
                    result.events, why) +
                missed_text(system, result);
       if (result.events == result.dropped)
-        return "No event in this time, and a periodic orbit is looked for at events: end segments by one that the "
-               "motion "
-               "meets, as a section.\n";
+        return "No event in this time, and periodic orbits are found by their events: simulate longer (--time), or "
+               "end\n"
+               "segments by an event that the motion meets, as a section.\n";
       if (const std::optional<int> period = search.repeats_after())
         return fmt::format(
             "The last events repeat, within {:g} of the orbit's range, after {}, but Newton's method finds no "
