@@ -233,13 +233,6 @@ int least_dimension(const HybridSystem& system, const Signature& signature) {
   return least;
 }
 
-bool all_finite(const double* values, int count) {
-  // The sum of x - x is zero exactly when every entry is finite; one pass without branches.
-  double sum = 0.0;
-  for (int i = 0; i < count; ++i) sum += values[i] - values[i];
-  return sum == 0.0;
-}
-
 namespace {
 
 /// Numbers on the stack, as long as they are not too many.

@@ -18,11 +18,12 @@ using Eigen::VectorXd;
 constexpr std::size_t points_looked_at = 6;
 constexpr long first_nearby = 48;  // events
 constexpr std::size_t most_passed = 8192;
-constexpr long first_gap = 8;           // events between two tries where the motion repeats itself
-constexpr double near = 0.05;           // states one period apart, in ranges
-constexpr int most_nearby = 3;          // candidates of one try
-constexpr long held_events = 64;        // for so long a motion that cannot be corrected repeats itself
-constexpr double held_movement = 10.0;  // recognitions
+constexpr long first_gap = 8;             // events between two tries where the motion repeats itself
+constexpr double near = 0.05;             // states one period apart, in ranges
+constexpr int most_nearby = 3;            // candidates of one try
+constexpr double longest_segment = 10.0;  // of an orbit nearby, in durations of the motion's turn
+constexpr long held_events = 64;          // for so long a motion that cannot be corrected repeats itself
+constexpr double held_movement = 10.0;    // recognitions
 
 /// "a multiplier of modulus 1.0123 (+- 1e-08)"
 std::string modulus_text(const CorrectedOrbit& orbit) {
@@ -176,10 +177,18 @@ bool AttractorSearch::try_nearby(const HybridSimulation& motion) {
   return false;
 }
 
+double AttractorSearch::duration_of_last(std::size_t events) const {
+  double sum = 0.0;
+  for (std::size_t back = 1; back <= events; ++back) sum += last_[last_.size() - back].duration;
+  return sum;
+}
+
 bool AttractorSearch::try_period(const HybridSimulation& motion, std::size_t period) {
+  SimulationSettings settings = settings_;
+  settings.flow.max_duration = std::min(settings.flow.max_duration, longest_segment * duration_of_last(period));
   const OrbitCandidate candidate{
-      motion,    last_.back().end, recurrence_.last(period), recurrence_.scale(2 * period), ignorable_,
-      settings_, passed(period)};
+      motion,   last_.back().end, recurrence_.last(period), recurrence_.scale(2 * period), ignorable_,
+      settings, passed(period)};
   const CorrectedOrbit corrected = correct_orbit(candidate);
   const bool repeats = recurrence_.period() == static_cast<int>(period);
   SettledOrbit found;

@@ -75,6 +75,7 @@ class AttractorSearch {
   bool try_recurrence(const HybridSimulation& motion, int period);
   bool try_rest(const HybridSimulation& motion);
   bool try_nearby(const HybridSimulation& motion);
+  double duration_of_last(std::size_t events) const;
   bool try_period(const HybridSimulation& motion, std::size_t period);
   bool keeps_repeating(const HybridSimulation& motion, int period);
   std::vector<Eigen::VectorXd> passed(std::size_t period) const;

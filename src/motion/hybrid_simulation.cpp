@@ -348,15 +348,19 @@ bool HybridSimulation::pass_piece(SimulatedSegment& segment, const WatchedFlow& 
     double& largest = largest_[event];
     largest = std::max(largest, system_.event(event, x.data(), par_.data()));
   }
-  for (int k = 1; k <= points_of_piece; ++k) {
-    const double t = k == points_of_piece ? to : from + (to - from) * k / points_of_piece;
-    VectorXd state = flow.state_at(t);
+  const DenseOutput& inside = flow.dense_output();
+  const auto note = [&](double t, const Eigen::Map<const VectorXd>& state) {
     segment.low = segment.low.cwiseMin(state);
     segment.high = segment.high.cwiseMax(state);
-    if (settings_.samples > 0) segment.samples.push_back({segment.start_time + t, std::move(state)});
+    if (settings_.samples > 0) segment.samples.push_back({segment.start_time + t, state});
+  };
+  for (int k = 1; k < points_of_piece; ++k) {
+    const double t = from + (to - from) * k / points_of_piece;
+    note(t, Eigen::Map<const VectorXd>(inside(t), x.size()));
   }
+  note(to, Eigen::Map<const VectorXd>(x.data(), x.size()));
   if (settings_.samples > 0 && segment.samples.size() > 50 * settings_.samples) halve(segment.samples);
-  if (settings_.on_piece && from < to) settings_.on_piece(segment.mode.field(), flow.dense_output(), from, to);
+  if (settings_.on_piece && from < to) settings_.on_piece(segment.mode.field(), inside, from, to);
   return !(settings_.interrupted && settings_.interrupted());
 }
 

@@ -121,7 +121,7 @@ struct LyapunovAccumulator::Implementation {
         settings(given),
         wanted(checked_columns(s, given)),
         frame(s.dimension(), wanted),
-        tangent(system, par),
+        tangent(system, par, given.flow.relative_tolerance),
         by_event(wanted),
         by_time(wanted) {
     settings.flow.variational = false;

@@ -20,6 +20,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double tolerance_of_turns = level::converged;
+constexpr double tolerance_far = level::differences;
+constexpr double far_from_orbit = 1e-3;   // in scales
 constexpr double noise_of_turns = 100.0;  // tolerances, of R(y)
 constexpr int most_newton_steps = 10;
 constexpr double farthest = 2000.0;  // of a Newton step, in scales
@@ -34,6 +36,8 @@ constexpr double most_turns = 128.0;
 constexpr std::size_t least_passed = 8;       // turns that the motion has made
 constexpr std::size_t turns_of_leaving = 16;  // at least
 constexpr double growth_of_leaving = 100.0;   // in them
+constexpr double growth_of_movement = 10.0;   // in them, at least
+constexpr double spreading = 1.5;             // modulus of a multiplier
 constexpr double like_growth = 0.2;
 constexpr double noticeable = 0.05;                             // fall of V in them
 constexpr double shares_of_distance[] = {1.0, 0.3, 0.1, 0.02};  // of the motion's, that turns begin from
@@ -72,6 +76,25 @@ SimulatedTurn turn_from(const OrbitCandidate& candidate, const VectorXd& y, doub
   settings.samples = 0;
   settings.sections.clear();
   return simulate_turn(candidate.motion, y, candidate.signature, settings, with_derivative);
+}
+
+/// Far from the orbit turns need fewer digits. A motion that has come near it begins with all.
+double tolerance_at(double distance) { return distance <= far_from_orbit ? tolerance_of_turns : tolerance_far; }
+
+/// Between the ends of two turns that the motion has made, so many turns ago; 0 where it has not made so many.
+double movement(const OrbitCandidate& candidate, std::size_t ago) {
+  const std::vector<VectorXd>& passed = candidate.passed;
+  if (passed.size() < ago + 2) return 0.0;
+  const VectorXd& last = passed[passed.size() - ago - 1];
+  return size_of(candidate, without_ignorable(candidate, last - passed[passed.size() - ago - 2]));
+}
+
+/// Turns far from an orbit that spread: where the motion does not leave one, what Newton's method would find does not
+/// attract.
+bool is_hopeless(const OrbitCandidate& candidate, double largest) {
+  const double before = movement(candidate, turns_of_leaving), now = movement(candidate, 0);
+  const bool may_leave = before > 0.0 && now >= growth_of_movement * before;
+  return now > far_from_orbit && largest > spreading && !may_leave;
 }
 
 /// A turn whose parts are alike is no turn: the orbit is a shorter one.
@@ -293,7 +316,8 @@ CorrectedOrbit correct_orbit(const OrbitCandidate& candidate) {
   orbit.end = candidate.end;
   double last_step = INFINITY, last_modulus = 0.0;
   for (int step = 0;; ++step) {
-    orbit.turn = turn_from(candidate, orbit.end, tolerance_of_turns, true);
+    const double distance = step == 0 ? movement(candidate, 0) : last_step;
+    orbit.turn = turn_from(candidate, orbit.end, tolerance_at(distance), true);
     if (!orbit.turn.fault.empty()) {
       orbit.is_smooth = step > 0 || orbit.turn.is_smooth;
       orbit.fault = orbit.turn.fault;
@@ -303,6 +327,10 @@ CorrectedOrbit correct_orbit(const OrbitCandidate& candidate) {
     const VectorXd residual = without_ignorable(candidate, orbit.turn.end() - orbit.end);
     last_modulus = largest_modulus(orbit.multipliers);
     orbit.multipliers = multipliers_without(orbit.turn.derivative, candidate.ignorable);
+    if (step == 0 && is_hopeless(candidate, largest_modulus(orbit.multipliers))) {
+      orbit.fault = "no stable periodic orbit near the motion";
+      return orbit;
+    }
     const bool is_noise = size_of(candidate, residual) <= noise(candidate);
     const VectorXd dy = closing_step(orbit.turn.derivative, residual, candidate.ignorable, candidate.motion.sizes());
     const double size = size_of(candidate, dy);

@@ -23,9 +23,13 @@ constexpr double most_difference = level::differences;
 // time on which A of size 1 changes, 1e-10.
 constexpr double most_slope = 0.3;  // of h^2 A'
 constexpr double most_bend = 0.01;  // of h^3 A'' / 2
+constexpr double most_bend_of_rough = 0.03;
 // exp(Omega) V then loses two digits at most, and the shortest direction of V seven between two orthonormalisations.
 constexpr double most_norm = 4.0;
 constexpr double most_stretched = 4.0;
+// From this tolerance of the states on, fourth order does. Simpson's rule has the error h^5 A'''' / 2880.
+constexpr double rough = 1e-9;
+constexpr int most_terms = 60;
 constexpr double shortest_share = level::negligible;  // of a piece, that a step is halved to
 // Of one piece, which is a step of the integration. Far from all orbits a state may be so large that it would take
 // years.
@@ -44,8 +48,12 @@ void commutator(const SparseMatrix& a, const SparseMatrix& b, SparseMatrix& out)
 
 }  // namespace
 
-TangentFlow::TangentFlow(const HybridSystem& system, const Eigen::VectorXd& par)
-    : system_(system), par_(par), f_(system.dimension()), units_(Eigen::VectorXd::Ones(system.dimension())) {
+TangentFlow::TangentFlow(const HybridSystem& system, const Eigen::VectorXd& par, double tolerance)
+    : system_(system),
+      par_(par),
+      is_rough_(tolerance >= rough),
+      f_(system.dimension()),
+      units_(Eigen::VectorXd::Ones(system.dimension())) {
   for (MatrixXd* const m : {&first_, &middle_, &last_}) m->resize(system.dimension(), system.dimension());
   const Eigen::Index n = system.dimension();
   dense_ = {MatrixXd(n, n), MatrixXd(n, n), MatrixXd(n, n), MatrixXd(n, n),
@@ -74,6 +82,7 @@ void TangentFlow::from_units(MatrixXd& vectors) const {
 }
 
 bool TangentFlow::series(int field, const DenseOutput& state, double from, double step) {
+  if (is_rough_) return rough_series(field, state, from, step);
   const double root = std::sqrt(15.0);
   if (!evaluate(field, state(from + (0.5 - root / 10.0) * step), first_)) return false;
   if (!evaluate(field, state(from + 0.5 * step), middle_)) return false;
@@ -93,6 +102,43 @@ bool TangentFlow::series(int field, const DenseOutput& state, double from, doubl
   return true;
 }
 
+bool TangentFlow::rough_series(int field, const DenseOutput& state, double from, double step) {
+  const bool is_known = from > 0.0 && from == known_at_ && field == known_field_;
+  if (!is_known && !evaluate(field, state(from), first_)) return false;
+  if (!evaluate(field, state(from + 0.5 * step), middle_) || !evaluate(field, state(from + step), last_)) return false;
+  known_at_ = from;
+  known_field_ = field;
+  has_few_entries_ = is_sparse(middle_);
+  if (has_few_entries_) {
+    sparse_.a1 = (step / 6.0 * (first_ + 4.0 * middle_ + last_)).sparseView();
+    sparse_.a2 = (step * (last_ - first_)).sparseView();
+    sparse_.a3 = (2.0 * step * (last_ - 2.0 * middle_ + first_)).sparseView();
+    rough_magnus(sparse_);
+    return true;
+  }
+  dense_.a1 = step / 6.0 * (first_ + 4.0 * middle_ + last_);
+  dense_.a2 = step * (last_ - first_);
+  dense_.a3 = 2.0 * step * (last_ - 2.0 * middle_ + first_);
+  rough_magnus(dense_);
+  return true;
+}
+
+/// The step has been made: it ends where the next one begins.
+void TangentFlow::keep_last(double to) {
+  first_.swap(last_);
+  known_at_ = to;
+}
+
+template <class Matrix>
+void TangentFlow::rough_magnus(Series<Matrix>& s) {
+  commutator(s.a1, s.a2, s.c1);
+  s.omega = s.a1 - s.c1 / 12.0;
+  norm_ = s.omega.norm();
+  const double slope = s.a2.norm();
+  difference_ = s.c1.norm() * (norm_ * norm_ / 720.0 + slope / 240.0);
+  changes_ = std::max(slope / most_slope, s.a3.norm() / most_bend_of_rough);
+}
+
 template <class Matrix>
 void TangentFlow::magnus(Series<Matrix>& s) {
   commutator(s.a1, s.a2, s.c1);
@@ -108,20 +154,26 @@ void TangentFlow::magnus(Series<Matrix>& s) {
   norm_ = s.omega.norm();
 }
 
+/// How many terms of exp(Omega) V are not below `enough` in any column: each is e^-|Omega| times as long as before, at
+/// least.
+int TangentFlow::terms(double enough) const {
+  double last = std::exp(norm_);
+  int k = 0;
+  while (last > enough && k < most_terms) last *= norm_ / ++k;
+  return std::max(k, 1);
+}
+
+/// V + Omega (V + Omega/2 (V + ...))
 void TangentFlow::apply_exponential(MatrixXd& vectors) {
   term_ = vectors;
-  const double enough = 0.1 * std::numeric_limits<double>::epsilon();
-  for (int k = 1; k < 60; ++k) {
+  for (int k = terms(is_rough_ ? 1e-3 * most_difference : level::rounding); k > 0; --k) {
     if (has_few_entries_)
       product_.noalias() = sparse_.omega * term_;
     else
       product_.noalias() = dense_.omega * term_;
-    term_ = product_ / static_cast<double>(k);
-    vectors += term_;
-    // Each column by itself: in units of the states one may be many times as large as another.
-    const auto sizes = vectors.colwise().lpNorm<Eigen::Infinity>().array();
-    if ((term_.colwise().lpNorm<Eigen::Infinity>().array() <= enough * sizes).all()) return;
+    term_ = vectors + product_ / static_cast<double>(k);
   }
+  vectors.swap(term_);
 }
 
 bool TangentFlow::carry(OrthonormalFrame& frame, int field, const DenseOutput& state, double from, double to) {
@@ -157,6 +209,7 @@ bool TangentFlow::carry(MatrixXd& vectors, int field, const DenseOutput& state, 
     from_units(vectors);
     stretched();
     t = is_last ? to : t + step;
+    if (is_rough_) keep_last(t);
     if (difference_ < 0.01 * most_difference && changes_ < 0.1 && norm_ < 0.5 * most_norm) step *= 2.0;
   }
   return true;
@@ -168,6 +221,7 @@ using Eigen::VectorXd;
 
 constexpr double tangential = level::rounding;  // |h_x f| / (|h_x| |f|): rounding
 constexpr double endless = 1e300;
+constexpr double far_off = 100.0;  // from where the motion has been, in the largest size of a state
 
 /// V at the end of a segment, onto the surface of its event. False where that is met tangentially.
 bool project_on_event(const HybridSystem& system, const SimulatedSegment& segment, const VectorXd& par, MatrixXd& v) {
@@ -183,17 +237,23 @@ SimulatedTurn simulate_turn(const HybridSimulation& at, const VectorXd& y, const
                             SimulationSettings settings, bool with_derivative) {
   const HybridSystem& system = at.system();
   const VectorXd& par = at.parameters();
-  TangentFlow tangent(system, par);
+  TangentFlow tangent(system, par, settings.flow.relative_tolerance);
   SimulatedTurn turn;
   MatrixXd& v = turn.derivative;
   settings.on_piece = {};
   tangent.use_sizes(at.sizes());
-  if (with_derivative) {
-    v = jump_at(system, at.last_event().jump, y.data(), par.data()).derivative;
-    settings.on_piece = [&](int field, const DenseOutput& state, double from, double to) {
-      turn.is_smooth = turn.is_smooth && tangent.carry(v, field, state, from, to);
-    };
-  }
+  const double farthest = far_off * at.sizes().maxCoeff();
+  bool has_left = false;
+  const bool has_sizes = farthest > 0.0;
+  if (with_derivative) v = jump_at(system, at.last_event().jump, y.data(), par.data()).derivative;
+  settings.on_piece = [&](int field, const DenseOutput& state, double from, double to) {
+    const double* const x = state(to);
+    has_left = has_sizes && !(Eigen::Map<const VectorXd>(x, y.size()).cwiseAbs().maxCoeff() <= farthest);
+    if (with_derivative && !has_left) turn.is_smooth = turn.is_smooth && tangent.carry(v, field, state, from, to);
+  };
+  settings.interrupted = [&, outer = settings.interrupted] {
+    return has_left || !turn.is_smooth || (outer && outer());
+  };
   HybridSimulation simulation(at, y, std::move(settings));
   for (std::size_t s = 0; s < expected.size(); ++s) {
     turn.segments.push_back(simulation.next(endless));

@@ -188,6 +188,7 @@ struct RungeKuttaFlow::Implementation {
   int field;
   VectorXd par;
   FlowOptions options;
+  bool has_units;
   VectorXd units;    // powers of two next to the sizes of states, in which the stepper has them
   DopriState start;  // the states of the problem
   DenseDormandPrince stepper;
@@ -210,26 +211,31 @@ struct RungeKuttaFlow::Implementation {
         field(i),
         par(p),
         options(o),
-        units(are_usual(o.sizes) ? VectorXd(VectorXd::Ones(x0.size()))
-                                 : units_of(o.sizes.unaryExpr(&size_for_tolerance))),
+        has_units(!are_usual(o.sizes)),
+        units(has_units ? units_of(o.sizes.unaryExpr(&size_for_tolerance)) : VectorXd(VectorXd::Ones(x0.size()))),
         start(x0.begin(), x0.end()),
         stepper(odeint::make_dense_output(o.absolute_tolerance, o.relative_tolerance, DormandPrince())),
         dense(start),
         scaled(start),
         single_state(start) {}
 
-  void multiply(const DopriState& x, DopriState& result) const {
-    for (std::size_t i = 0; i < x.size(); ++i) result[i] = units(static_cast<Eigen::Index>(i)) * x[i];
+  const DopriState& multiply(const DopriState& x, DopriState& result) const {
+    result = x;
+    if (has_units)
+      for (std::size_t i = 0; i < x.size(); ++i) result[i] *= units(static_cast<Eigen::Index>(i));
+    return result;
   }
   void divide(DopriState& x) const {
+    if (!has_units) return;
     for (std::size_t i = 0; i < x.size(); ++i) x[i] /= units(static_cast<Eigen::Index>(i));
   }
 
   auto right_hand_side() {
     return [this](const DopriState& y, DopriState& dydt, double) {
-      multiply(y, at);
-      system.value(FunctionKind::field, field, at.data(), par.data(), dydt.data());
+      const DopriState& x = has_units ? multiply(y, at) : y;
+      system.value(FunctionKind::field, field, x.data(), par.data(), dydt.data());
       if (all_finite(dydt.data(), static_cast<int>(dydt.size()))) return divide(dydt);
+      multiply(y, at);
       remember_trouble(FunctionKind::field, field, y);
       std::fill(dydt.begin(), dydt.end(), no_value);
     };
@@ -259,7 +265,10 @@ struct RungeKuttaFlow::Implementation {
 
   const double* dense_output(double t) {
     if (steps == 0) return start.data();
-    stepper.calc_state(t, scaled);
+    if (t == stepper.current_time())
+      scaled = stepper.current_state();
+    else
+      stepper.calc_state(t, scaled);
     multiply(scaled, dense);
     return dense.data();
   }

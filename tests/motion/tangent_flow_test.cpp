@@ -31,6 +31,26 @@ struct Breathing {
   }
 };
 
+/// s' = 1, y' = y^3 - y; at s = 6, s -> s - 6: y comes to rest if it begins below 1, else it grows beyond all bounds
+/// in finite time.
+struct Leaving {
+  static constexpr int dimension = 2, parameters = 0, fields = 1, events = 1, jumps = 1;
+  static inline long calls = 0;  // of the field
+  template <class T>
+  void field(int, const T* x, const T*, T* f) const {
+    ++calls;
+    f[0] = T(1.0), f[1] = x[1] * x[1] * x[1] - x[1];
+  }
+  template <class T>
+  T event(int, const T* x, const T*) const {
+    return 6.0 - x[0];
+  }
+  template <class T>
+  void jump(int, const T* x, const T*, T* g) const {
+    g[0] = x[0] - 6.0, g[1] = x[1];
+  }
+};
+
 /// s' = 1, x_i' = cos(s) (x_{i-1} - 2 x_i + x_{i+1}), ends held: few entries of f_x are not zero, which are multiplied
 /// and factorised as such. At x = 0 the derivative is exp(sin(t) L), L = S diag(-4 sin^2(k pi / (2 n + 2))) S.
 struct Chain {
@@ -90,7 +110,7 @@ TEST_CASE("many states, few entries: the derivative of a chain in closed form, b
     x(0) = t;
     return x.data();
   };
-  TangentFlow tangent(system, par);
+  TangentFlow tangent(system, par, 0.0);
   MatrixXd v = MatrixXd::Identity(Chain::dimension, Chain::dimension);
   REQUIRE(tangent.carry(v, 1, state, 0.0, end));
   CHECK((v - Chain::derivative(end)).cwiseAbs().maxCoeff() < 1e-9);
@@ -104,16 +124,18 @@ TEST_CASE("tangent flow: growth along a trajectory in closed form, whatever the 
     x << t, 0.0;
     return x.data();
   };
-  for (const double end : {0.01, 0.3, 2.0, 30.0}) {
-    CAPTURE(end);
-    TangentFlow flow(system, par);
-    OrthonormalFrame frame(2, 2);
-    REQUIRE(flow.carry(frame, 1, state, 0.0, end));
-    frame.orthonormalise();
-    const VectorXd growth = frame.take_growth();
-    CHECK(std::abs(growth.sum() - std::sin(end)) < 1e-9 * (1.0 + end));  // trace: cos t
-  }
-  TangentFlow flow(system, par);
+  const std::pair<double, double> orders[] = {{0.0, 1e-9}, {1e-8, 1e-6}};  // sixth, fourth: tolerance, error
+  for (const auto& [tolerance, error] : orders)
+    for (const double end : {0.01, 0.3, 2.0, 30.0}) {
+      CAPTURE(tolerance, end);
+      TangentFlow flow(system, par, tolerance);
+      OrthonormalFrame frame(2, 2);
+      REQUIRE(flow.carry(frame, 1, state, 0.0, end));
+      frame.orthonormalise();
+      const VectorXd growth = frame.take_growth();
+      CHECK(std::abs(growth.sum() - std::sin(end)) < error * (1.0 + end));  // trace: cos t
+    }
+  TangentFlow flow(system, par, 0.0);
   OrthonormalFrame frame(2, 1);
   frame.vectors() << 0.0, 1.0;
   REQUIRE(flow.carry(frame, 1, state, 0.0, 1.5));
@@ -131,26 +153,46 @@ TEST_CASE("tangent flow: agrees with the sensitivities of CVODES along the Loren
   CvodesFlow reference(system, 1, x0, par, options);
   REQUIRE(reference.advance(0.25) == Progress::end_time);
 
-  options.variational = false;
-  OrthonormalFrame frame(3, 3);
-  frame.vectors().setIdentity();
-  TangentFlow tangent(system, par);
-  CvodesFlow flow(system, 1, x0, par, options);
-  flow.on_piece([&](double from, double to) {
-    // So short a time that columns stay apart: the frame is the flow's Jacobian as long as nothing is made orthonormal.
-    tangent.restart();
-    return tangent.carry(frame, 1, flow.dense_output(), from, to);
-  });
-  REQUIRE(flow.advance(0.25) == Progress::end_time);
   const MatrixXd phi = reference.jacobian();
-  CHECK((frame.vectors() - phi).norm() < 1e-9 * phi.norm());
+  options.variational = false;
+  const auto error_of = [&](double tolerance) {
+    OrthonormalFrame frame(3, 3);
+    frame.vectors().setIdentity();
+    TangentFlow tangent(system, par, tolerance);
+    CvodesFlow flow(system, 1, x0, par, options);
+    flow.on_piece([&](double from, double to) {
+      // So short a time that columns stay apart: the frame is the flow's Jacobian as long as nothing is made
+      // orthonormal.
+      tangent.restart();
+      return tangent.carry(frame, 1, flow.dense_output(), from, to);
+    });
+    REQUIRE(flow.advance(0.25) == Progress::end_time);
+    return (frame.vectors() - phi).norm() / phi.norm();
+  };
+  CHECK(error_of(options.relative_tolerance) < 1e-9);
+  CHECK(error_of(1e-8) < 1e-6);
+}
+
+TEST_CASE("simulated turn: one that leaves the motion for far away ends as a fault at once") {
+  const HybridSystem& system = system_of<Leaving>();
+  const ParameterVector par = parameters({});
+  SimulationSettings settings;
+  settings.flow.method = IntegrationMethod::runge_kutta;
+  settings.flow.set(level::relaxed_flow);
+  HybridSimulation motion(ModeRule(system, std::vector<Mode>{Mode{{{1, 1, 1}}, {}}}), Eigen::Vector2d(0.0, 0.1), par,
+                          settings);
+  for (int k = 0; k < 3; ++k) REQUIRE(motion.next(1e3).ended_by == SegmentEnd::event);
+  Leaving::calls = 0;
+  const SimulatedTurn turn = simulate_turn(motion, Eigen::Vector2d(6.0, 1.5), {{1, 1, 1}}, settings, true);
+  CHECK(turn.fault == "segment 1 does not end as that of the motion");
+  CHECK(Leaving::calls < 10'000);
 }
 
 TEST_CASE("tangent flow: says where a derivative is not finite") {
   const HybridSystem& system = system_of<Breathing>();
   const ParameterVector par = parameters({});
   VectorXd x = VectorXd::Constant(2, NAN);
-  TangentFlow flow(system, par);
+  TangentFlow flow(system, par, 0.0);
   OrthonormalFrame frame(2, 2);
   CHECK_FALSE(flow.carry(
       frame, 1, [&](double) { return x.data(); }, 0.0, 1.0));
