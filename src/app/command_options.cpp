@@ -198,8 +198,12 @@ void add_length_options(CLI::App& command, SimulationRequest& request, const cha
       ->type_name("N")
       ->check(whole_number(0, 1000000000))
       ->group(group);
-  command.add_option("--wait", request.wait, "stop after this time without an event")
+  command
+      .add_option("--wait", request.wait,
+                  fmt::format("stop after this time without an event; not given, also after {} steps",
+                              request.steps_without_event))
       ->type_name("T")
+      ->each([&request](const std::string&) { request.steps_without_event = no_limit; })
       ->check(positive_time())
       ->capture_default_str()
       ->group(group);

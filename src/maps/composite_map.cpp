@@ -235,6 +235,7 @@ class IteratesBeside : public MotionBeside {
     if (spectrum != nullptr) *spectrum = exponents.spectrum();
     return !course.has_ended;
   }
+  VectorXd units() const override { return VectorXd::Ones(low_.size()); }
   VectorXd range() const override { return high_ - low_; }
   double time() const override { return motion_.time(); }
   std::string why_ended() const override { return message_; }

@@ -367,7 +367,7 @@ VectorXd checked_units(const HybridSystem& system, const DerivativeCheckOptions&
   if (options.states.empty() && initial == nullptr) return VectorXd::Ones(n);
   const VectorXd x = options.states.empty() ? VectorXd(Eigen::Map<const VectorXd>(initial, n)) : options.states.front();
   if (x.size() != n || system.count(FunctionKind::field) == 0) return VectorXd::Ones(n);
-  return units_of(sizes_at(system, 1, x, base_parameters(system, options)).unaryExpr(&size_for_tolerance));
+  return units_of(sizes_at(system, 1, x, base_parameters(system, options)));
 }
 
 std::vector<TestPoint> test_points(const HybridSystem& system, const DerivativeCheckOptions& options) {

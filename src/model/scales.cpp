@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/levels.hpp"
 #include "linear/dense_matrix.hpp"
 
 namespace tchat {
@@ -81,19 +82,26 @@ std::vector<bool> StateSizes::known(const std::vector<bool>& sure) const {
 
 namespace {
 
-/// Sizes s for which the entries |a_ij| s_j / s_i outside of the diagonal have columns and rows of the same sum
-/// (Osborne, Journal of the ACM 7, 1960), with the median 1. All 1 where these are usual.
-Eigen::VectorXd balancing_sizes(Eigen::MatrixXd a) {
+/// Sizes s for which the entries |a_ij| s_j / s_i outside of the diagonal, none negative, have columns and rows of the
+/// same sum (Osborne, Journal of the ACM 7, 1960), as far as these are larger than `negligible`.
+Eigen::VectorXd osborne_sizes(Eigen::MatrixXd a, double negligible) {
   constexpr int most_sweeps = 50;
   const Eigen::Index n = a.rows();
   a.diagonal().setZero();
   Eigen::VectorXd sizes = Eigen::VectorXd::Ones(n);
   for (int sweep = 0; sweep < most_sweeps; ++sweep)
     for (Eigen::Index i = 0; i < n; ++i) {
-      const double row = a.row(i).dot(sizes) / sizes(i);
-      const double column = a.col(i).dot(sizes.cwiseInverse()) * sizes(i);
+      const double row = a.row(i).dot(sizes) / sizes(i) + negligible;
+      const double column = a.col(i).dot(sizes.cwiseInverse()) * sizes(i) + negligible;
       if (row > 0.0 && column > 0.0) sizes(i) *= std::sqrt(row / column);
     }
+  return sizes;
+}
+
+/// With the median 1. All 1 where these are usual.
+Eigen::VectorXd balancing_sizes(const Eigen::MatrixXd& a) {
+  const Eigen::Index n = a.rows();
+  const Eigen::VectorXd sizes = osborne_sizes(a, 0.0);
   if (n == 0 || are_usual(sizes) || !sizes.allFinite()) return Eigen::VectorXd::Ones(n);
   Eigen::VectorXd sorted = sizes;
   std::sort(sorted.begin(), sorted.end());
@@ -101,6 +109,14 @@ Eigen::VectorXd balancing_sizes(Eigen::MatrixXd a) {
 }
 
 }  // namespace
+
+Eigen::VectorXd balancing_units(const Eigen::MatrixXd& a) {
+  constexpr double share_of_diagonal = 1e-2;
+  const double negligible =
+      std::max(share_of_diagonal * a.diagonal().cwiseAbs().maxCoeff(), level::negligible * a.cwiseAbs().maxCoeff());
+  const Eigen::VectorXd sizes = osborne_sizes(a.cwiseAbs(), negligible);
+  return sizes.allFinite() ? units_of(sizes) : Eigen::VectorXd::Ones(a.rows());
+}
 
 Eigen::VectorXd StateSizes::sizes(bool balances) const {
   const std::vector<bool> has_size = known();
@@ -178,7 +194,7 @@ double length_in_sizes(const Eigen::VectorXd& d, const Eigen::VectorXd& sizes) {
 
 Eigen::VectorXd units_of(const Eigen::VectorXd& sizes) {
   if (are_usual(sizes)) return Eigen::VectorXd::Ones(sizes.size());
-  return sizes.unaryExpr([](double size) { return std::exp2(std::round(std::log2(size))); });
+  return sizes.unaryExpr([](double size) { return std::exp2(std::round(std::log2(size_for_tolerance(size)))); });
 }
 
 Eigen::VectorXd units_of_states(const HybridSystem& system) {

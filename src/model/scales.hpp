@@ -83,6 +83,10 @@ Eigen::VectorXd sizes_from_ranges(const Eigen::VectorXd& ranges);
 /// |d| of a change d of states, each in units of its size: infinite where one without a size changes.
 double length_in_sizes(const Eigen::VectorXd& d, const Eigen::VectorXd& sizes);
 
+/// Powers of two u for which the matrix a_ij u_j / u_i, n x n, has a norm not far from its least, also where it is
+/// reducible: a large entry may stand for a transient only.
+Eigen::VectorXd balancing_units(const Eigen::MatrixXd& a);
+
 /// Powers of two next to `sizes`, multiplication by which is exact; all 1 where they are usual.
 Eigen::VectorXd units_of(const Eigen::VectorXd& sizes);
 

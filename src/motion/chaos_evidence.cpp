@@ -9,6 +9,7 @@
 
 #include "base/levels.hpp"
 #include "model/events.hpp"
+#include "model/scales.hpp"
 #include "motion/lyapunov_exponents.hpp"
 #include "motion/settle.hpp"
 
@@ -36,6 +37,7 @@ class SimulationBeside : public MotionBeside {
     settings_.sections.clear();
     settings_.on_piece = {};
     at_.emplace(motion, end, settings_);
+    units_ = units_of(motion.sizes());
   }
 
   bool pass(long events, LyapunovSpectrum* spectrum) override {
@@ -64,7 +66,8 @@ class SimulationBeside : public MotionBeside {
     return true;
   }
 
-  VectorXd range() const override { return high_ - low_; }
+  VectorXd units() const override { return units_; }
+  VectorXd range() const override { return (high_ - low_).cwiseQuotient(units_); }
   double time() const override { return time_; }
   std::string why_ended() const override { return message_; }
   bool was_interrupted() const override { return was_interrupted_; }
@@ -79,7 +82,7 @@ class SimulationBeside : public MotionBeside {
 
   SimulationSettings settings_;
   std::optional<HybridSimulation> at_;
-  VectorXd end_, low_, high_;
+  VectorXd end_, low_, high_, units_;
   double time_ = 0.0;
   bool was_interrupted_ = false;
   std::string message_;
@@ -146,7 +149,9 @@ ChaosEvidence chaos_evidence(const std::function<std::unique_ptr<MotionBeside>(c
             fmt::format("a distance grows {:.2g}-fold in {} events only, as where a motion leaves something unstable",
                         std::exp(rate * beside->time() * most_events / first_window), most_events),
             0};
-  const std::unique_ptr<MotionBeside> pushed = begin_beside(push_along(direction, beside->range()));
+  const VectorXd units = beside->units();
+  const VectorXd push = push_along(direction.cwiseQuotient(units), beside->range());
+  const std::unique_ptr<MotionBeside> pushed = begin_beside(units.cwiseProduct(push));
   if (!pushed->pass(1 + static_cast<long>(events_before), nullptr)) return evidence_of_end(*pushed);
   ChaosJudge judge;
   LyapunovSpectrum spectrum;

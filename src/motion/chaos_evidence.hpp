@@ -65,7 +65,9 @@ class MotionBeside {
   virtual ~MotionBeside() = default;
   /// So many events on; `spectrum`, if not null, is set to their exponents. False when the motion ends.
   virtual bool pass(long events, LyapunovSpectrum* spectrum) = 0;
-  /// Of each state in the last part, n.
+  /// Of the states, n.
+  virtual Eigen::VectorXd units() const = 0;
+  /// Of each state in the last part, n, in these units.
   virtual Eigen::VectorXd range() const = 0;
   /// Of all parts.
   virtual double time() const = 0;

@@ -136,7 +136,13 @@ bool falls_again(ModeRule rule, const IndexVector& index, const VectorXd& x, con
   return std::abs(at.h) <= widest_on_surface(at, image, known) && at.rate() < 0.0;
 }
 
-/// Nothing where the event needs no decision: the start is away from its surface, or the jump changes nothing.
+bool changes_field(ModeRule rule, const IndexVector& index, const VectorXd& x, const VectorXd& par) {
+  const Mode next = rule.next(index, x, par);
+  return !next.index_vectors.empty() && next.field() != index.field;
+}
+
+/// Nothing where the event needs no decision: the start is away from its surface, or the jump changes nothing and no
+/// other field follows a start that is said to be before the event.
 std::optional<SurfaceStart> judge(const ModeRule& rule, const IndexVector& index, const VectorXd& x,
                                   const VectorXd& par, const StartSide& side, const StateAccuracy& known) {
   const HybridSystem& system = rule.system();
@@ -150,8 +156,10 @@ std::optional<SurfaceStart> judge(const ModeRule& rule, const IndexVector& index
     return start;
   }
   if (side.given != StartSide::Given::before && is_wall) return is_on ? std::optional(start) : std::nullopt;
+  const bool is_before = side.given == StartSide::Given::before;
+  if (is_before && changes_field(rule, index, x, par)) return start;
   if (!is_wall && !moves_state(system, index, x, par, known)) return std::nullopt;
-  if (side.given == StartSide::Given::before) return start;
+  if (is_before) return start;
   start.is_undecided = true;
   start.is_after = (is_on || at.h < 0.0) && falls_again(rule, index, x, par, known);
   return is_on || start.is_after ? std::optional(start) : std::nullopt;
@@ -394,7 +402,10 @@ void HybridSimulation::integrate(SimulatedSegment& segment, double end_time) {
   WatchedFlow& flow = *integrated;
   watched_ = watched_events();
   flow.watch(watched_, events_begun_after());
-  flow.on_piece([&](double from, double to) { return pass_piece(segment, flow, from, to); });
+  long steps = 0;
+  flow.on_piece([&](double from, double to) {
+    return pass_piece(segment, flow, from, to) && ++steps < settings_.steps_without_event;
+  });
   const std::vector<int> terminal = mode_.terminal_events();
   const double left = end_time - time_;
   const double until = std::min(left, settings_.flow.max_duration);
@@ -414,6 +425,10 @@ void HybridSimulation::integrate(SimulatedSegment& segment, double end_time) {
   if (settings_.samples > 0) thin(segment.samples, settings_.samples);
   std::sort(segment.marks.begin(), segment.marks.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
 
+  if (progress == Progress::stopped && steps >= settings_.steps_without_event)
+    return stop(segment, SegmentEnd::no_event,
+                fmt::format("no event within {} integration steps after t = {:.10g}, up to t = {:.10g}", steps, time_,
+                            time_ + segment.duration));
   if (progress == Progress::stopped) return stop(segment, SegmentEnd::interrupted, "interrupted");
   if (progress == Progress::failed) return stop(segment, SegmentEnd::failed, flow.message());
   if (progress == Progress::end_time && left <= settings_.flow.max_duration)

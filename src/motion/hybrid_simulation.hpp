@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -136,12 +137,16 @@ std::vector<SurfaceStart> surface_starts(const ModeRule& rule, const Mode& mode,
 
 class WatchedFlow;
 
+inline constexpr long no_limit = std::numeric_limits<long>::max();
+
 struct SimulationSettings {
   FlowOptions flow;           ///< max_duration: give up waiting for an event after this time
   StartSide side;             ///< of events on whose surface the start lies
   double contact = 1e-3;      ///< a least value of h below this share of its largest value is a near-grazing contact
   std::vector<int> sections;  ///< event functions whose falls are marked wherever they do not end the segment
   std::size_t samples = 200;  ///< at most so many states are kept of each segment; 0 none
+  /// After so many steps of the integrator it waits no longer for an event.
+  long steps_without_event = no_limit;
   std::function<bool()> interrupted;
   /// Told of every piece of the flow that has been passed: its field, x(t) inside it, and from when to when, counted
   /// from the start of the segment.

@@ -168,7 +168,7 @@ struct LyapunovAccumulator::Implementation {
   void use_sizes() {
     tangent.use_sizes(sizes);
     if (are_usual(sizes)) return;
-    units = units_of(sizes.unaryExpr(&size_for_tolerance));
+    units = units_of(sizes);
     frame.use_units(units);
   }
 
@@ -250,8 +250,11 @@ struct LyapunovAccumulator::Implementation {
 
   void carry(int field, const DenseOutput& state, double from, double to) {
     if (!fault.empty() || !(from < to)) return;
-    if (!tangent.carry(frame, field, state, from, to))
-      fault = fmt::format("{} has no finite derivatives on the way", system.function_name(FunctionKind::field, field));
+    if (tangent.carry(frame, field, state, from, to)) return;
+    const std::string name = system.function_name(FunctionKind::field, field);
+    fault = tangent.takes_too_many_steps()
+                ? fmt::format("the derivatives of {} are so large that tangent vectors take too many steps", name)
+                : fmt::format("{} has no finite derivatives on the way", name);
   }
 
   void end_tick() {

@@ -28,7 +28,7 @@ constexpr double most_bend_of_rough = 0.03;
 constexpr double most_norm = 4.0;
 constexpr double most_stretched = 4.0;
 // From this tolerance of the states on, fourth order does. Simpson's rule has the error h^5 A'''' / 2880.
-constexpr double rough = 1e-9;
+constexpr double rough = level::orbit;
 constexpr int most_terms = 60;
 constexpr double shortest_share = level::negligible;  // of a piece, that a step is halved to
 // Of one piece, which is a step of the integration. Far from all orbits a state may be so large that it would take
@@ -69,8 +69,9 @@ bool TangentFlow::evaluate(int field, const double* x, MatrixXd& out) {
 }
 
 void TangentFlow::use_sizes(const Eigen::VectorXd& sizes) {
+  known_at_ = -1.0;
   has_units_ = !are_usual(sizes);
-  if (has_units_) units_ = units_of(sizes.unaryExpr(&size_for_tolerance));
+  units_ = units_of(sizes);
 }
 
 void TangentFlow::to_units(MatrixXd& vectors) const {
@@ -79,6 +80,17 @@ void TangentFlow::to_units(MatrixXd& vectors) const {
 
 void TangentFlow::from_units(MatrixXd& vectors) const {
   if (has_units_) vectors = units_.asDiagonal() * vectors;
+}
+
+/// Units in which A is smaller, if there are any.
+bool TangentFlow::balance() {
+  const Eigen::VectorXd units = balancing_units(middle_);
+  const double balanced = (units.cwiseInverse().asDiagonal() * middle_ * units.asDiagonal()).norm();
+  if (!(balanced < 0.5 * middle_.norm())) return false;
+  units_ = units_.cwiseProduct(units);
+  has_units_ = true;
+  known_at_ = -1.0;
+  return true;
 }
 
 bool TangentFlow::series(int field, const DenseOutput& state, double from, double step) {
@@ -195,11 +207,17 @@ bool TangentFlow::carry(MatrixXd& vectors, int field, const DenseOutput& state, 
   const double shortest = shortest_share * (to - from);
   double step = to - from;
   int steps = 0;
+  bool is_balanced = false;
   for (double t = from; t < to;) {
-    if (++steps > most_steps) return false;
+    takes_too_many_steps_ = ++steps > most_steps;
+    if (takes_too_many_steps_) return false;
     const bool is_last = t + step >= to - shortest;
     if (is_last) step = to - t;
     if (!series(field, state, t, step)) return false;
+    if (norm_ > most_norm && !is_balanced) {
+      is_balanced = true;
+      if (balance()) continue;
+    }
     if ((difference_ > most_difference || changes_ > 1.0 || norm_ > most_norm) && step > shortest) {
       step *= 0.5;
       continue;

@@ -31,8 +31,8 @@ namespace tchat {
 //     a1 = h/6 (A_1 + 4 A_2 + A_3),   a2 = h (A_3 - A_1),   Omega = a1 - 1/12 [a1, a2],
 //
 // with an error of about |[a1, a2]| (|a1|^2 / 720 + |a2| / 240). All of that is judged in units of the sizes of states,
-// where these are far from 1. Allocates nothing after construction, but of many states with few entries in f_x, where
-// the matrices are sparse.
+// where these are far from 1, and in units that balance A where it is too large for the step. Allocates nothing after
+// construction, but of many states with few entries in f_x, where the matrices are sparse.
 
 class TangentFlow {
  public:
@@ -45,6 +45,8 @@ class TangentFlow {
   bool carry(OrthonormalFrame& frame, int field, const DenseOutput& state, double from, double to);
   /// V -> Phi V for n x K vectors, Phi the Jacobian of the flow from one time to the next. False as above.
   bool carry(Eigen::MatrixXd& vectors, int field, const DenseOutput& state, double from, double to);
+  /// Why the last carry() has failed.
+  bool takes_too_many_steps() const { return takes_too_many_steps_; }
   /// Sizes of the states, n, as in model/scales.hpp; before the first call they count as 1.
   void use_sizes(const Eigen::VectorXd& sizes);
   /// The frame has been made orthonormal by others.
@@ -66,6 +68,7 @@ class TangentFlow {
   bool series(int field, const DenseOutput& state, double from, double step);
   bool rough_series(int field, const DenseOutput& state, double from, double step);
   void keep_last(double to);
+  bool balance();
   bool evaluate(int field, const double* x, Eigen::MatrixXd& out);
   int terms(double enough) const;
   void apply_exponential(Eigen::MatrixXd& vectors);
@@ -75,6 +78,7 @@ class TangentFlow {
   const HybridSystem& system_;
   const Eigen::VectorXd& par_;
   bool is_rough_;
+  bool takes_too_many_steps_ = false;
   double stretched_ = 0.0;                 // sum of |Omega| since the frame was orthonormal
   double norm_ = 0.0, difference_ = 0.0;   // of Omega; from fourth order
   double changes_ = 0.0;                   // of A over the step, as a share of what is allowed

@@ -212,7 +212,7 @@ struct RungeKuttaFlow::Implementation {
         par(p),
         options(o),
         has_units(!are_usual(o.sizes)),
-        units(has_units ? units_of(o.sizes.unaryExpr(&size_for_tolerance)) : VectorXd(VectorXd::Ones(x0.size()))),
+        units(has_units ? units_of(o.sizes) : VectorXd(VectorXd::Ones(x0.size()))),
         start(x0.begin(), x0.end()),
         stepper(odeint::make_dense_output(o.absolute_tolerance, o.relative_tolerance, DormandPrince())),
         dense(start),

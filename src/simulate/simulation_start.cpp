@@ -213,6 +213,7 @@ SimulationSettings simulation_settings(const SimulationRequest& request, const s
   settings.flow.absolute_tolerance = 0.01 * request.tolerance;
   settings.flow.max_duration = request.wait;
   settings.flow.max_steps = 10000000;
+  settings.steps_without_event = request.steps_without_event;
   settings.contact = request.contact;
   settings.samples = static_cast<std::size_t>(request.rows);
   settings.interrupted = interrupted;

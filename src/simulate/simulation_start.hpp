@@ -41,6 +41,7 @@ struct SimulationRequest {
   SimulationPlan plan;
   double tolerance = level::converged;  ///< relative, of one integration step
   double wait = 1000.0;                 ///< longest time without an event
+  long steps_without_event = 500'000;   ///< of the integrator, where the time has not been given
   double contact = 1e-3;
   int rows = 200;  ///< of the trajectory, for each segment
   bool stiff = false;

@@ -302,7 +302,8 @@ void add_identity(const HybridSystem& system, const SamplerSetup& setup, bool ca
       add("side", fmt::format("{} {}", side.given == StartSide::Given::after ? "after" : "before", side.event));
   add("tolerance", fmt::format("{}", r.tolerance));
   add("method", r.stiff ? "stiff" : "explicit");
-  add("wait", fmt::format("{}", r.wait));
+  const std::string steps = r.steps_without_event == no_limit ? "" : fmt::format(", {} steps", r.steps_without_event);
+  add("wait", fmt::format("{}{}", r.wait, steps));
   add("transient", fmt::format("{} events, time {}", plan.transient_events, plan.transient_time));
   add("length", plan.time ? fmt::format("time {}", *plan.time) : fmt::format("{} events", plan.events.value_or(0)));
   add("period", fmt::format("at most {} events, recognised to {}", plan.max_period, plan.recognition));

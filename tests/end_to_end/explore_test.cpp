@@ -224,7 +224,7 @@ TEST_CASE("where one direction from a branch point is known, the other one alone
   const Workspace workspace;
   std::filesystem::copy(RELAY_SOURCE, workspace.file("relay.cpp"));
   const std::string tree = explored(workspace,
-                                    "relay --over omega=7.15:7.5:28 PAR(zeta)=0.05 --starts 0 --branches 3 "
+                                    "relay --over omega=7.15:7.5:15 PAR(zeta)=0.05 --starts 0 --branches 3 "
                                     "UZR={omega:[7.18,7.25,7.29,7.35,7.45]}");
   INFO(tree);
   CHECK(std::regex_search(tree, std::regex("BP [0-9]+ of b2 at .*, the other direction is b[0-9]+\n")));

@@ -87,6 +87,27 @@ TEST_CASE("simulate: a walker that starts just after a heel strike walks") {
                  "--after-event changes nothing"));
 }
 
+TEST_CASE("simulate: a start before an event that changes the field only is in the other field at once") {
+  const Workspace workspace;
+  workspace.write("stop.tch", R"(par k=4
+init q=1, v=1
+q' = v
+field free: v' = -q
+field in_contact: v' = -k*(q - 1)
+event touch = 1 - q
+event leave = q - 1
+after touch: in_contact until leave -> identity
+after any: free until touch -> identity
+)");
+  const Outcome outcome = tchat(workspace, "simulate stop --before-event --events 2");
+  INFO(outcome.text());
+  CHECK(outcome.err.empty());
+  const std::vector<ListedEvent> events = events_of(workspace, "stop", 2);
+  REQUIRE(events.size() >= 2);
+  CHECK(events[0].time == 0.0);
+  CHECK(events[1].time == Approx(std::acos(-1.0) / 2.0).epsilon(1e-9));  // half a period with the frequency sqrt(k)
+}
+
 TEST_CASE("simulate: from a label the motion is that of the label, and so are its durations") {
   const Workspace workspace;
   const auto [rule, segments, constants] =

@@ -31,6 +31,25 @@ struct Breathing {
   }
 };
 
+/// x' = -x / 2 + 1e8 y, y' = -0.6 y
+struct TransientGrowth {
+  static constexpr int dimension = 2, parameters = 0, fields = 1, events = 1, jumps = 1;
+  static inline long calls = 0;  // of the field
+  template <class T>
+  void field(int, const T* x, const T*, T* f) const {
+    ++calls;
+    f[0] = -0.5 * x[0] + 1e8 * x[1], f[1] = -0.6 * x[1];
+  }
+  template <class T>
+  T event(int, const T* x, const T*) const {
+    return x[1];
+  }
+  template <class T>
+  void jump(int, const T* x, const T*, T* g) const {
+    g[0] = x[0], g[1] = x[1];
+  }
+};
+
 /// s' = 1, y' = y^3 - y; at s = 6, s -> s - 6: y comes to rest if it begins below 1, else it grows beyond all bounds
 /// in finite time.
 struct Leaving {
@@ -141,6 +160,26 @@ TEST_CASE("tangent flow: growth along a trajectory in closed form, whatever the 
   REQUIRE(flow.carry(frame, 1, state, 0.0, 1.5));
   frame.orthonormalise();
   CHECK(std::abs(frame.take_growth()(0) - std::sin(1.5)) < 1e-9);
+}
+
+TEST_CASE("tangent flow: a transient that grows 1e8 times takes no small steps") {
+  const HybridSystem& system = system_of<TransientGrowth>();
+  const ParameterVector par = parameters({});
+  const VectorXd x = VectorXd::Zero(2);
+  const DenseOutput state = [&](double) { return x.data(); };
+  const double end = 6.0;
+  MatrixXd expected(2, 2);
+  expected << std::exp(-0.5 * end), 1e8 * (std::exp(-0.5 * end) - std::exp(-0.6 * end)) / 0.1, 0.0,
+      std::exp(-0.6 * end);
+  for (const double tolerance : {0.0, 1e-8}) {
+    TangentFlow tangent(system, par, tolerance);
+    MatrixXd v = MatrixXd::Identity(2, 2);
+    TransientGrowth::calls = 0;
+    REQUIRE(tangent.carry(v, 1, state, 0.0, end));
+    CHECK((v - expected).cwiseAbs().maxCoeff() < (tolerance == 0.0 ? 1e-11 : 1e-9) * expected(0, 1));
+    CHECK(std::abs(v(1, 1) / expected(1, 1) - 1.0) < (tolerance == 0.0 ? 1e-12 : 1e-9));
+    CHECK(TransientGrowth::calls < 100);
+  }
 }
 
 TEST_CASE("tangent flow: agrees with the sensitivities of CVODES along the Lorenz attractor") {
