@@ -225,6 +225,8 @@ struct RungeKuttaFlow::Implementation {
       for (std::size_t i = 0; i < x.size(); ++i) result[i] *= units(static_cast<Eigen::Index>(i));
     return result;
   }
+  /// What the stepper has as states of the problem: `y` itself where they have no units, else in `room`.
+  const DopriState& in_states(const DopriState& y, DopriState& room) const { return has_units ? multiply(y, room) : y; }
   void divide(DopriState& x) const {
     if (!has_units) return;
     for (std::size_t i = 0; i < x.size(); ++i) x[i] /= units(static_cast<Eigen::Index>(i));
@@ -232,7 +234,7 @@ struct RungeKuttaFlow::Implementation {
 
   auto right_hand_side() {
     return [this](const DopriState& y, DopriState& dydt, double) {
-      const DopriState& x = has_units ? multiply(y, at) : y;
+      const DopriState& x = in_states(y, at);
       system.value(FunctionKind::field, field, x.data(), par.data(), dydt.data());
       if (all_finite(dydt.data(), static_cast<int>(dydt.size()))) return divide(dydt);
       multiply(y, at);
@@ -265,12 +267,9 @@ struct RungeKuttaFlow::Implementation {
 
   const double* dense_output(double t) {
     if (steps == 0) return start.data();
-    if (t == stepper.current_time())
-      scaled = stepper.current_state();
-    else
-      stepper.calc_state(t, scaled);
-    multiply(scaled, dense);
-    return dense.data();
+    if (t == stepper.current_time()) return in_states(stepper.current_state(), dense).data();
+    stepper.calc_state(t, scaled);
+    return in_states(scaled, dense).data();
   }
 
   Progress fail(const std::string& why) {
@@ -297,9 +296,9 @@ struct RungeKuttaFlow::Implementation {
     const double length = stepper.current_time() - stepper.previous_time();
     if (!(length > smallest_step * stepper.current_time()))
       return not_evaluated.empty() ? "the steps become too small" : not_evaluated;
-    multiply(stepper.current_state(), at);
-    if (!all_finite(at.data(), static_cast<int>(at.size()))) return "the state is not finite";
-    return unevaluated_event(at);
+    const DopriState& x = in_states(stepper.current_state(), at);
+    if (!all_finite(x.data(), static_cast<int>(x.size()))) return "the state is not finite";
+    return unevaluated_event(x);
   }
 
   std::string unevaluated_event(const DopriState& x) {
