@@ -200,7 +200,7 @@ void add_length_options(CLI::App& command, SimulationRequest& request, const cha
       ->group(group);
   command
       .add_option("--wait", request.wait,
-                  fmt::format("stop after this time without an event; not given, also after {} steps",
+                  fmt::format("stop after this time without an event; if not given, also after {} steps",
                               request.steps_without_event))
       ->type_name("T")
       ->each([&request](const std::string&) { request.steps_without_event = no_limit; })
