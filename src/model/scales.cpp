@@ -141,7 +141,12 @@ Eigen::VectorXd sizes_at(const HybridSystem& system, int field, const Eigen::Vec
   const Eigen::VectorXd accelerations = by_state * f;
   constexpr double never = std::numeric_limits<double>::infinity(), rounding = 1e-6;
   const auto shorter = [](double time, double other) { return other > 0.0 && other < time ? other : time; };
-  const double by_itself = shorter(never, 1.0 / eigenvalues(by_state).cwiseAbs().maxCoeff());
+  // Where f_x is nilpotent, as [[-1, -1], [1, 1]] is, its eigenvalues are rounding, 1e-8.
+  const Eigen::VectorXd units = balancing_units(by_state);
+  const Eigen::MatrixXd balanced = units.cwiseInverse().asDiagonal() * by_state * units.asDiagonal();
+  const double norm = balanced.cwiseAbs().rowwise().sum().maxCoeff();
+  const double fastest = eigenvalues(by_state).cwiseAbs().maxCoeff();
+  const double by_itself = shorter(never, fastest > rounding * norm ? 1.0 / fastest : never);
   Eigen::VectorXd times(n);
   for (Eigen::Index i = 0; i < n; ++i)
     times(i) = shorter(shorter(by_itself, sizes(i) / std::abs(f(i))), std::sqrt(sizes(i) / std::abs(accelerations(i))));

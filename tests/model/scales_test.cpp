@@ -29,6 +29,26 @@ struct Oscillators {
   }
 };
 
+/// r' = r (2 - r^2), phi' = 1, beside a state that stays where it is.
+struct CycleBesideIdle {
+  static constexpr int dimension = 3, parameters = 0, fields = 1, events = 1, jumps = 1;
+  template <class T>
+  void field(int, const T* x, const T*, T* f) const {
+    const T growth = 2.0 - x[0] * x[0] - x[1] * x[1];
+    f[0] = growth * x[0] - x[1];
+    f[1] = growth * x[1] + x[0];
+    f[2] = T(0.0);
+  }
+  template <class T>
+  T event(int, const T* x, const T*) const {
+    return x[1];
+  }
+  template <class T>
+  void jump(int, const T* x, const T*, T* g) const {
+    for (int i = 0; i < 3; ++i) g[i] = x[i];
+  }
+};
+
 Eigen::VectorXd sizes_at_rest(double x_unit, double y_unit) {
   const HybridSystem& system = system_of<Oscillators>();
   StateSizes sizes(Eigen::MatrixXd::Zero(4, 1));
@@ -48,4 +68,14 @@ TEST_CASE("states of which only their equations are known have sizes that balanc
   const Eigen::VectorXd sizes = sizes_at_rest(1e9, 1e-6);
   CHECK(sizes(0) / sizes(1) == Approx(1e9));
   CHECK(sizes(2) / sizes(3) == Approx(1e-6));
+}
+
+TEST_CASE("where the eigenvalues of the field are rounding, an idle state says nothing of the others' sizes") {
+  const HybridSystem& system = system_of<CycleBesideIdle>();
+  const Eigen::VectorXd par = Eigen::VectorXd::Zero(system.layout().room());
+  // At (1, 0) f_x is nilpotent: [[-1, -1], [1, 1]] with eigenvalues of 1e-8.
+  const Eigen::VectorXd sizes = sizes_at(system, 1, Eigen::Vector3d(1.0, 0.0, 0.0), par);
+  CHECK(sizes(0) == Approx(1.0));
+  CHECK(sizes(1) > 0.1);
+  CHECK(sizes(1) < 10.0);
 }
