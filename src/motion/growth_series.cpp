@@ -114,11 +114,30 @@ Mean weighted_mean(const Rates& rates) {
   return mean;
 }
 
-Mean mean_of(const Rates& rates) {
+/// What the mean is off where the rate falls like c / t from the motion's start: c at the middle of the time, by the
+/// slope of the means of 8 blocks, which has to be certain. `elapsed`: before these pieces.
+double trend_error(const Rates& all, double elapsed) {
+  constexpr Index blocks = 8;
+  constexpr double certain = 10.0;  // deviations
+  const Rates rates = after_alignment(all);
+  const Index length = rates.size() / blocks;
+  if (length == 0) return 0.0;
+  VectorXd place = VectorXd::LinSpaced(blocks, -0.5 + 0.5 / blocks, 0.5 - 0.5 / blocks), value(blocks);
+  for (Index b = 0; b < blocks; ++b)
+    value(b) = rates.logarithms.segment(b * length, length).sum() / rates.durations.segment(b * length, length).sum();
+  const double slope = place.dot(value) / place.squaredNorm();
+  const double left = (value.array() - value.mean() - slope * place.array()).matrix().norm();
+  if (!(std::abs(slope) > certain * left / std::sqrt((blocks - 2) * place.squaredNorm()))) return 0.0;
+  return std::abs(slope) * (0.5 + elapsed / rates.durations.sum());
+}
+
+Mean mean_of(const Rates& rates, double elapsed) {
   if (!rates.logarithms.allFinite()) return {0, rates.logarithms.sum(), 0.0};
   const Mean plain = plain_mean(rates);
   const Mean weighted = weighted_mean(rates);
-  return weighted.error < clearly_better * plain.error ? weighted : plain;
+  Mean mean = weighted.error < clearly_better * plain.error ? weighted : plain;
+  mean.error = std::max(mean.error, trend_error(rates, elapsed));
+  return mean;
 }
 
 }  // namespace
@@ -153,7 +172,7 @@ void GrowthSeries::double_pieces() {
   if (pieces_ == 0) in_last_ = 0;
 }
 
-LyapunovSpectrum GrowthSeries::spectrum(Index structural) const {
+LyapunovSpectrum GrowthSeries::spectrum(Index structural, double elapsed) const {
   const Index directions = bins_.rows() - 1;
   LyapunovSpectrum spectrum;
   spectrum.exponents = VectorXd::Constant(directions, std::nan(""));
@@ -165,7 +184,7 @@ LyapunovSpectrum GrowthSeries::spectrum(Index structural) const {
   const Index complete = in_last_ == width_ || used_ <= least_blocks ? used_ : used_ - 1;
   std::vector<Mean> means;
   for (Index j = 0; j < directions; ++j) {
-    means.push_back(mean_of({bins_.row(j).head(complete), bins_.row(directions).head(complete)}));
+    means.push_back(mean_of({bins_.row(j).head(complete), bins_.row(directions).head(complete)}, elapsed));
     means.back().direction = j;
   }
   std::stable_sort(means.begin(), means.end(), [](const Mean& a, const Mean& b) { return a.value > b.value; });

@@ -26,6 +26,8 @@ namespace tchat {
 // and Yorke, Nonlinearity 30, 2017), if a piece is the same everywhere on the motion (one event, or one length of
 // time); it also forgets how the frame began. Its bar comes from weighted means of 8 blocks. It is taken where its bar
 // is less than a fifth of the other one, which does not happen by chance on chaotic motion.
+//
+// A rate that still falls along the motion, as c / t where it comes to rest like a power of time, is off by c / t.
 
 struct LyapunovSpectrum {
   Eigen::VectorXd exponents;  ///< descending; minus infinity for directions that are lost altogether
@@ -55,8 +57,9 @@ class GrowthSeries {
   void double_pieces();
   long pieces() const { return pieces_; }
 
-  /// exponents and errors, time. Those of the first `structural` directions are marked.
-  LyapunovSpectrum spectrum(Eigen::Index structural = 0) const;
+  /// exponents and errors, time. Those of the first `structural` directions are marked. `elapsed`: how long the motion
+  /// had lasted before the first piece, in the unit of durations.
+  LyapunovSpectrum spectrum(Eigen::Index structural = 0, double elapsed = 0.0) const;
 
  private:
   void join_pairs();

@@ -111,6 +111,7 @@ struct LyapunovAccumulator::Implementation {
   double tick = 0.0, left_of_tick = 0.0;
   double least_tick = 0.0;
   double time = 0.0;
+  std::optional<double> elapsed;  // before the first segment
   double time_of_returns = 0.0, time_since_return = 0.0;
   long events = 0, tangential = 0;
   std::string fault;
@@ -345,6 +346,7 @@ struct LyapunovAccumulator::Implementation {
 
   void pass(const SimulatedSegment& segment) {
     has_begun = true;
+    if (!elapsed) elapsed = segment.start_time;
     if (!is_in_segment) begin_segment(segment.mode.field(), segment.start.data());
     if (carried == 0.0 && segment.duration > 0.0) integrate(segment);
     is_in_segment = false;
@@ -369,9 +371,11 @@ struct LyapunovAccumulator::Implementation {
   }
 
   LyapunovSpectrum spectrum() const {
-    LyapunovSpectrum best = by_event.spectrum(structural());
+    const double before = elapsed.value_or(0.0);
+    const double returns = time_of_returns > 0.0 ? static_cast<double>(by_event.pieces()) / time_of_returns : 0.0;
+    LyapunovSpectrum best = by_event.spectrum(structural(), has_section() ? returns * before : before);
     if (!has_section()) {
-      const LyapunovSpectrum timed = by_time.spectrum(structural());
+      const LyapunovSpectrum timed = by_time.spectrum(structural(), before);
       if (by_event.pieces() == 0 || timed.errors.sum() < best.errors.sum()) best = timed;
     }
     best.time = has_section() ? time_of_returns : time;

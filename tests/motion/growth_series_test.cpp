@@ -58,6 +58,17 @@ TEST_CASE("growth series: a rate that changes along the motion has a bar as larg
   CHECK(s.errors(0) > 0.09);
 }
 
+TEST_CASE("growth series: the bar of a rate that falls like 1 / t reaches its limit, however late it is looked at") {
+  for (const double before : {0.0, 1e3, 1e5}) {
+    CAPTURE(before);
+    GrowthSeries series(1);
+    for (int i = 0; i < 1024; ++i) series.add(VectorXd::Constant(1, -0.2 - 1.5 / (before + i + 1.0)), 1.0);
+    const LyapunovSpectrum s = series.spectrum(0, before);
+    CHECK(std::abs(s.exponents(0) + 0.2) <= 2.0 * s.errors(0));
+    CHECK(s.errors(0) < 4.0 * std::abs(s.exponents(0) + 0.2));
+  }
+}
+
 TEST_CASE("growth series: what the next piece takes back does not count") {
   // Differences of normal numbers: their sum stays bounded.
   std::mt19937 random(3);
