@@ -12,6 +12,8 @@
 #include "files/dat_file.hpp"
 #include "files/solution_file_reader.hpp"
 #include "model/parameter_vector.hpp"
+#include "model/scales.hpp"
+#include "motion/orbit_identity.hpp"
 #include "motion/recurrence.hpp"
 
 namespace tchat {
@@ -153,16 +155,14 @@ double AttractorSamples::value_of(const SweepAttractor& attractor) const {
   return table_.over.front().value(static_cast<long>(attractor.index));
 }
 
-SignatureWord signature_word(const SweepAttractor& attractor) {
-  SignatureWord word;
-  if (attractor.signature.empty()) return word;
-  for (const IndexVector& v : parse_signature(attractor.signature)) word.push_back({v.field, v.event, v.jump});
-  return word;
+Signature signature_of(const SweepAttractor& attractor) {
+  return attractor.signature.empty() ? Signature() : parse_signature(attractor.signature);
 }
 
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double same_parameter = level::orbit;  // of the largest |p| of the branch
@@ -175,19 +175,64 @@ bool is_at(double parameter, double value, const CataloguedSection& branch) {
   return std::abs(parameter - value) <= same_parameter * largest;
 }
 
-/// States that nothing depends on, looked for at the orbit's own states.
-std::vector<Index> drifting_states(const HybridSystem& system, const LabelledSolution& orbit) {
+/// Which solutions can be compared? Not tori.
+bool is_comparable(const LabelledSolution& x) {
+  const int n = x.dimension;
+  if (n < 1 || x.states.size() == 0 || x.states.rows() % n != 0) return false;
+  const FamilyFacts& facts = family_of(x.problem_type).facts();
+  return !facts.headings.has_period ||
+         (!keeps_contact(x.problem_type) && facts.has_return_map && !facts.has_several_returns);
+}
+
+/// The nodes of each segment.
+std::vector<MatrixXd> segments_of(const LabelledSolution& x) {
+  std::vector<MatrixXd> segments;
+  for (Index row = 0; row < x.states.rows(); row += x.dimension)
+    segments.push_back(x.states.middleRows(row, x.dimension));
+  return segments;
+}
+
+/// Of an equilibrium: its state, and the sizes of the states.
+ComparedOrbit compared_rest(const HybridSystem& system, int field, const VectorXd& x, const ParameterVector& par) {
+  StateSizes sizes(x);
+  sizes.add_at_rest(system, field, x.data(), par.data());
+  return {{IndexVector{}}, x, sizes.sizes(), {}, {}};
+}
+
+/// Differences of states that nothing depends on count for nothing.
+std::optional<ComparedOrbit> compared_orbit(const HybridSystem& system, const LabelledSolution& solution,
+                                            const Signature& signature) {
+  if (!is_comparable(solution)) return std::nullopt;
   ParameterVector par = initial_parameters(system);
-  for (Index k = 0; k < std::min<Index>(system.parameters(), std::ssize(orbit.parameters)); ++k)
-    par(k) = orbit.parameters[static_cast<std::size_t>(k)];
+  for (Index k = 0; k < std::min<Index>(system.parameters(), std::ssize(solution.parameters)); ++k)
+    par(k) = solution.parameters[static_cast<std::size_t>(k)];
+  if (!family_of(solution.problem_type).facts().headings.has_period)
+    return compared_rest(system, signature.empty() ? 1 : signature.front().field,
+                         solution.states.col(0).head(solution.dimension), par);
+  ComparedOrbit orbit{signature, {}, {}, segments_of(solution), solution.tau};
+  if (std::ssize(orbit.tau) != solution.states.cols() || std::ssize(orbit.segments) != std::ssize(signature))
+    return std::nullopt;
+  const Index m = std::ssize(orbit.segments);
+  MatrixXd extremes(solution.dimension, 2 * m);
+  orbit.ends.resize(solution.dimension, m);
   std::vector<VectorXd> points;
-  for (const Index column : {Index(0), orbit.states.cols() / 2, orbit.states.cols() - 1})
-    points.push_back(orbit.states.col(column).head(orbit.dimension));
-  const std::vector<bool> flags = ignorable_states(system, points, par);
-  std::vector<Index> states;
-  for (std::size_t k = 0; k < flags.size(); ++k)
-    if (flags[k]) states.push_back(static_cast<Index>(k));
-  return states;
+  for (Index s = 0; s < m; ++s) {
+    const MatrixXd& nodes = orbit.segments[static_cast<std::size_t>(s)];
+    extremes.col(2 * s) = nodes.rowwise().minCoeff();
+    extremes.col(2 * s + 1) = nodes.rowwise().maxCoeff();
+    orbit.ends.col(s) = nodes.rightCols(1);
+    if (s == 0)
+      for (const Index column : {Index(0), nodes.cols() / 2, nodes.cols() - 1}) points.emplace_back(nodes.col(column));
+  }
+  StateSizes sizes(extremes);
+  for (Index s = 0; s < m; ++s)
+    sizes.add(system, FunctionKind::field, signature[static_cast<std::size_t>(s)].field, orbit.ends.col(s).data(),
+              par.data());
+  std::vector<bool> rounding = sizes.known();
+  rounding.flip();
+  orbit.sizes = sizes_of_differences(extremes.rowwise().minCoeff(), extremes.rowwise().maxCoeff(), rounding,
+                                     ignorable_states(system, points, par));
+  return orbit;
 }
 
 LabelledSolution read_label_of(const std::string& path, int label) {
@@ -261,8 +306,10 @@ std::optional<KnownBranch> BranchRecognition::branch_of(const CataloguedSection&
 
 bool BranchRecognition::is_same(const OwnOrbit& own, const CataloguedSection& known,
                                 const LabelledSolution& other) const {
-  return orbit_distance({&own.solution, own.section->own_signature}, {&other, known.own_signature},
-                        drifting_states(system_, own.solution)) <= same_orbit;
+  if (own.solution.problem_type != other.problem_type) return false;
+  const auto a = compared_orbit(system_, own.solution, own.section->own_signature),
+             b = compared_orbit(system_, other, known.own_signature);
+  return a && b && orbit_distance(*a, *b) <= same_orbit;
 }
 
 BranchRecognition::Verdict BranchRecognition::compare(const OwnOrbit& own, const std::string& branch) const {
@@ -315,12 +362,12 @@ std::optional<MirroredBranch> BranchRecognition::mirror_in(const CataloguedSecti
                  known))
         continue;
       const LabelledSolution other = read_label_of(commands_.file('q', known.branch), label);
-      const std::vector<Index> drifting = drifting_states(system_, solution);
+      const auto a = compared_orbit(system_, solution, section.own_signature),
+                 b = compared_orbit(system_, other, known.own_signature);
+      if (!a || !b || solution.problem_type != other.problem_type) continue;
       // Where both branches have one orbit, that it is its own mirror image says nothing of the others.
-      if (orbit_distance({&solution, section.own_signature}, {&other, known.own_signature}, drifting) <=
-          clearly_different)
-        continue;
-      const auto flags = reflection(solution, other, drifting, same_orbit);
+      if (orbit_distance(*a, *b) <= clearly_different) continue;
+      const auto flags = reflection(*a, *b, same_orbit);
       if (!flags) continue;
       MirroredBranch mirror{known.branch, {}};
       for (std::size_t k = 0; k < flags->size(); ++k)
@@ -393,7 +440,7 @@ std::vector<std::string> branches_of(const OrbitCatalogue& catalogue, const Swee
     const std::string branch = state ? catalogue.branch_with_state(sample.value, *state, sweep.samples.size()) : "";
     return branch.empty() ? std::vector<std::string>{} : std::vector<std::string>{branch};
   }
-  const SignatureWord word = sweep.is_cut ? SignatureWord{{1, 0, 0}} : signature_word(*sample.attractor);
+  const Signature word = sweep.is_cut ? Signature{{1, 0, 0}} : signature_of(*sample.attractor);
   return catalogue.branches_with(word, sample.value, sample.period, sweep.samples.values_of(sample, sweep.monitors));
 }
 
@@ -417,7 +464,7 @@ void measure_coverage(const Sweep& sweep, const OrbitCatalogue& catalogue, const
       one.first = sample.value;
       one.command = words.empty() ? Command{} : commands.show(sample.value, words);
     }
-    one.segments = known.kind == AttractorKind::periodic ? static_cast<int>(signature_word(known).size()) : 0;
+    one.segments = known.kind == AttractorKind::periodic ? static_cast<int>(signature_of(known).size()) : 0;
     one.last = sample.value;
   });
   for (auto& [number, one] : missing) diagram.unexplained.push_back(std::move(one));

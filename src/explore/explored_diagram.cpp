@@ -72,9 +72,7 @@ std::string lines_json(const CommandJob& job) {
 std::vector<std::string> signatures_of(const PointFile& points) {
   std::vector<std::string> list;
   for (const PointSection& section : points.sections) {
-    Signature signature;
-    for (const auto& v : section.signature) signature.push_back({v[0], v[1], v[2]});
-    const std::string text = to_string(signature);
+    const std::string text = to_string(section.signature);
     if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);
   }
   return list;

@@ -168,7 +168,7 @@ class Explorer {
 
   /// Has the attractor more segments than are followed?
   bool is_too_long(const SweepAttractor& attractor) const {
-    return static_cast<int>(signature_word(attractor).size()) > request_.segments;
+    return static_cast<int>(signature_of(attractor).size()) > request_.segments;
   }
 
   /// A branch for each attractor that repeats itself or rests, of the first sweep.

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
-#include <optional>
 #include <utility>
 
 #include "base/levels.hpp"
@@ -16,12 +13,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-
-bool repeats_after(const SignatureWord& word, std::size_t length) {
-  for (std::size_t i = length; i < word.size(); ++i)
-    if (word[i] != word[i - length]) return false;
-  return true;
-}
 
 std::vector<std::string> state_columns(const PointSection& section) {
   std::vector<std::string> names;
@@ -83,19 +74,6 @@ bool about_agree(const InterpolatedPoint& orbit, const std::vector<double>& moni
 }
 
 }  // namespace
-
-PrimitiveWord primitive_word(const SignatureWord& signature) {
-  std::size_t length = 1;
-  while (length < signature.size() && (signature.size() % length != 0 || !repeats_after(signature, length))) ++length;
-  SignatureWord word(signature.begin(),
-                     signature.begin() + static_cast<std::ptrdiff_t>(std::min(length, signature.size())));
-  SignatureWord least = word;
-  for (std::size_t shift = 1; shift < word.size(); ++shift) {
-    std::rotate(word.begin(), word.begin() + 1, word.end());
-    least = std::min(least, word);
-  }
-  return {least, signature.empty() ? 1 : static_cast<int>(signature.size() / least.size())};
-}
 
 std::vector<CataloguedSection> catalogued_sections(const std::string& branch, const PointFile& file,
                                                    const std::vector<std::string>& monitors) {
@@ -208,7 +186,7 @@ std::vector<std::string> OrbitCatalogue::branches_at(const CataloguedSection& li
   return branches;
 }
 
-std::vector<std::string> OrbitCatalogue::branches_with(const SignatureWord& signature, double parameter, double period,
+std::vector<std::string> OrbitCatalogue::branches_with(const Signature& signature, double parameter, double period,
                                                        const std::vector<double>& monitors) const {
   const PrimitiveWord wanted = primitive_word(signature);
   std::vector<std::string> branches;
@@ -287,201 +265,6 @@ bool agrees(const InterpolatedPoint& point, const VectorXd& numbers, double size
     if (!(std::abs(point.numbers(k) - numbers(k)) <= 2.0 * point.uncertainty(k) + least_uncertainty * size))
       return false;
   return true;
-}
-
-namespace {
-
-using Eigen::MatrixXd;
-
-constexpr double unknown = std::numeric_limits<double>::infinity();
-constexpr double least_size = 1e-3;  // of a state, as a share of the largest
-constexpr Index points_compared = 12, points_of_piece = 4;
-constexpr Index nodes_beside = 2;  // on each side of the nearest one
-constexpr int halvings = 40;
-
-bool is_smooth(const SignatureWord& word) { return word.size() == 1 && word.front()[1] == 0; }
-
-/// n x m
-MatrixXd ends_of_segments(const LabelledSolution& solution) {
-  const Index n = solution.dimension;
-  return Eigen::Map<const MatrixXd>(solution.states.rightCols(1).data(), n, solution.states.rows() / n);
-}
-
-/// n x all nodes of all segments
-MatrixXd states_of(const LabelledSolution& solution) {
-  return Eigen::Map<const MatrixXd>(solution.states.data(), solution.dimension,
-                                    solution.states.size() / solution.dimension);
-}
-
-/// 1 / size of each state, 0 of those left out.
-VectorXd weights(const MatrixXd& states, const std::vector<Index>& drifting) {
-  VectorXd sizes = states.cwiseAbs().rowwise().maxCoeff();
-  for (const Index k : drifting) sizes(k) = 0.0;
-  const double least = least_size * sizes.maxCoeff();
-  VectorXd result = sizes.cwiseMax(least).cwiseInverse();
-  for (const Index k : drifting) result(k) = 0.0;
-  return result.allFinite() ? result : VectorXd::Zero(result.size());
-}
-
-double distance(const VectorXd& a, const VectorXd& b, const VectorXd& weight) {
-  return (a - b).cwiseProduct(weight).cwiseAbs().maxCoeff();
-}
-
-double distance_of_ends(const ComparedOrbit& a, const ComparedOrbit& b, const std::vector<Index>& drifting) {
-  const MatrixXd x = ends_of_segments(*a.solution), y = ends_of_segments(*b.solution);
-  if (x.cols() != std::ssize(a.signature) || y.cols() != std::ssize(b.signature)) return unknown;
-  const VectorXd weight = weights(states_of(*a.solution), drifting);
-  const Index both = std::lcm(x.cols(), y.cols());
-  double least = unknown;
-  for (Index shift = 0; shift < y.cols(); ++shift) {
-    double largest = 0.0;
-    for (Index k = 0; k < both && largest < least; ++k) {
-      const Index i = k % x.cols(), j = (k + shift) % y.cols();
-      const bool is_like = a.signature[static_cast<std::size_t>(i)] == b.signature[static_cast<std::size_t>(j)];
-      largest = is_like ? std::max(largest, distance(x.col(i), y.col(j), weight)) : unknown;
-    }
-    least = std::min(least, largest);
-  }
-  return least;
-}
-
-/// The nodes of one segment, and where they are on it.
-struct Piece {
-  MatrixXd nodes;  ///< n x as many as `tau`
-  const std::vector<double>& tau;
-};
-
-/// Those segments that last.
-std::vector<Piece> pieces_of(const LabelledSolution& orbit) {
-  std::vector<Piece> pieces;
-  const Index n = orbit.dimension;
-  const VectorXd weight = weights(states_of(orbit), {});
-  for (Index row = 0; row < orbit.states.rows(); row += n) {
-    const MatrixXd nodes = orbit.states.middleRows(row, n);
-    const MatrixXd moved = weight.asDiagonal() * (nodes.colwise() - nodes.col(0));
-    if (moved.cwiseAbs().maxCoeff() > level::orbit) pieces.push_back({nodes, orbit.tau});
-  }
-  return pieces;
-}
-
-/// Two events at one point leave a segment between them that takes no time; which two that is says nothing.
-bool has_instants(const LabelledSolution& orbit) {
-  return std::ssize(pieces_of(orbit)) * orbit.dimension < orbit.states.rows();
-}
-
-/// The state at tau of the polynomial through some nodes.
-VectorXd state_at(const Piece& piece, Index first, Index last, double tau) {
-  VectorXd state = VectorXd::Zero(piece.nodes.rows());
-  const auto at = [&](Index k) { return piece.tau[static_cast<std::size_t>(k)]; };
-  for (Index k = first; k <= last; ++k) {
-    double weight = 1.0;
-    for (Index l = first; l <= last; ++l)
-      if (l != k) weight *= (tau - at(l)) / (at(k) - at(l));
-    state += weight * piece.nodes.col(k);
-  }
-  return state;
-}
-
-double distance_from_piece(const VectorXd& state, const Piece& piece, const VectorXd& weight) {
-  const Index nodes = piece.nodes.cols();
-  Index nearest = 0;
-  const auto size = [&](const VectorXd& other) { return (state - other).cwiseProduct(weight).squaredNorm(); };
-  for (Index k = 1; k < nodes; ++k)
-    if (size(piece.nodes.col(k)) < size(piece.nodes.col(nearest))) nearest = k;
-  const Index first = std::max<Index>(0, nearest - nodes_beside);
-  const Index last = std::min<Index>(nodes - 1, nearest + nodes_beside);
-  const auto value = [&](double tau) { return size(state_at(piece, first, last, tau)); };
-  double low = piece.tau[static_cast<std::size_t>(std::max<Index>(0, nearest - 1))];
-  double high = piece.tau[static_cast<std::size_t>(std::min<Index>(nodes - 1, nearest + 1))];
-  for (int k = 0; k < halvings; ++k) {
-    const double a = low + (high - low) / 3.0, b = high - (high - low) / 3.0;
-    (value(a) < value(b) ? high : low) = value(a) < value(b) ? b : a;
-  }
-  return distance(state, state_at(piece, first, last, 0.5 * (low + high)), weight);
-}
-
-/// The largest distance of points of the one, which has been reflected, from the other.
-double distance_beyond(const std::vector<Piece>& one, const VectorXd& signs, const std::vector<Piece>& other,
-                       const VectorXd& weight) {
-  if (one.empty() || other.empty()) return unknown;
-  const Index points = std::max<Index>(points_of_piece, points_compared / std::ssize(one));
-  double largest = 0.0;
-  for (const Piece& piece : one)
-    for (Index k = 0; k < points && largest < unknown; ++k) {
-      const VectorXd state = signs.cwiseProduct(piece.nodes.col(k * (piece.nodes.cols() - 1) / points));
-      double least = unknown;
-      for (const Piece& target : other) least = std::min(least, distance_from_piece(state, target, weight));
-      largest = std::max(largest, least);
-    }
-  return largest;
-}
-
-/// However they are cut.
-double distance_of_curves(const LabelledSolution& a, const VectorXd& signs, const LabelledSolution& b,
-                          const std::vector<Index>& drifting) {
-  if (std::ssize(a.tau) != a.states.cols() || std::ssize(b.tau) != b.states.cols()) return unknown;
-  const VectorXd weight = weights(states_of(a), drifting);
-  const std::vector<Piece> of_a = pieces_of(a), of_b = pieces_of(b);
-  return std::max(distance_beyond(of_a, signs, of_b, weight), distance_beyond(of_b, signs, of_a, weight));
-}
-
-}  // namespace
-
-namespace {
-
-/// Why two solutions cannot be compared as periodic orbits: false.
-bool are_orbits(const LabelledSolution& x, const LabelledSolution& y) {
-  const int n = x.dimension;
-  if (x.problem_type != y.problem_type || n != y.dimension || n < 1) return false;
-  if (x.states.size() == 0 || y.states.size() == 0 || x.states.rows() % n != 0 || y.states.rows() % n != 0)
-    return false;
-  const FamilyFacts& facts = family_of(x.problem_type).facts();
-  return !facts.headings.has_period ||
-         (!keeps_contact(x.problem_type) && facts.has_return_map && !facts.has_several_returns);
-}
-
-}  // namespace
-
-double orbit_distance(const ComparedOrbit& a, const ComparedOrbit& b, const std::vector<Index>& drifting) {
-  const LabelledSolution &x = *a.solution, &y = *b.solution;
-  if (!are_orbits(x, y)) return unknown;
-  if (!family_of(x.problem_type).facts().headings.has_period)
-    return distance(x.states.col(0), y.states.col(0), weights(x.states.leftCols(1), drifting));
-  const bool are_cut_alike = primitive_word(a.signature).word == primitive_word(b.signature).word;
-  const bool are_instant = has_instants(x) || has_instants(y);
-  if (are_cut_alike && !is_smooth(a.signature) && !are_instant) return distance_of_ends(a, b, drifting);
-  return distance_of_curves(x, VectorXd::Ones(x.dimension), y, drifting);
-}
-
-/// A state whose range is that of the other orbit keeps its sign, one whose range is the other's with the sign changed
-/// changes it; where both hold, either is tried.
-std::optional<std::vector<bool>> reflection(const LabelledSolution& a, const LabelledSolution& b,
-                                            const std::vector<Index>& drifting, double tolerance) {
-  if (!are_orbits(a, b) || !family_of(a.problem_type).facts().headings.has_period) return std::nullopt;
-  const MatrixXd x = states_of(a), y = states_of(b);
-  const VectorXd weight = weights(x, drifting);
-  constexpr double coarse = 0.02;  // nodes lie elsewhere
-  std::vector<Index> open;
-  VectorXd signs = VectorXd::Ones(a.dimension);
-  for (Index k = 0; k < a.dimension; ++k) {
-    const double low = x.row(k).minCoeff(), high = x.row(k).maxCoeff();
-    const double of_low = y.row(k).minCoeff(), of_high = y.row(k).maxCoeff();
-    const bool keeps = std::max(std::abs(low - of_low), std::abs(high - of_high)) * weight(k) <= coarse;
-    const bool changes = std::max(std::abs(low + of_high), std::abs(high + of_low)) * weight(k) <= coarse;
-    if (!keeps && !changes) return std::nullopt;
-    if (!keeps) signs(k) = -1.0;
-    if (keeps && changes && weight(k) > 0.0) open.push_back(k);
-  }
-  constexpr std::size_t most_open = 8;
-  if (open.size() > most_open) return std::nullopt;
-  for (unsigned choice = 0; choice < (1U << open.size()); ++choice) {
-    for (std::size_t k = 0; k < open.size(); ++k) signs(open[k]) = (choice >> k) & 1U ? -1.0 : 1.0;
-    if (signs.minCoeff() > 0.0 || distance_of_curves(a, signs, b, drifting) > tolerance) continue;
-    std::vector<bool> result;
-    for (const double sign : signs) result.push_back(sign < 0.0);
-    return result;
-  }
-  return std::nullopt;
 }
 
 }  // namespace tchat

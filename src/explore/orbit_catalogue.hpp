@@ -1,14 +1,12 @@
-/// The orbits of known branches, interpolated between points, and whether two labelled solutions are the same orbit.
+/// The orbits of known branches, interpolated between points.
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "files/point_file_reader.hpp"
-#include "files/solution_file.hpp"
+#include "motion/orbit_identity.hpp"
 
 namespace tchat {
 
@@ -19,20 +17,11 @@ namespace tchat {
 // between its points (cubic, compared with quadratic). Two different orbits may share these numbers: whether they are
 // the same is decided by their states (explore/branch_recognition.hpp).
 
-using SignatureWord = std::vector<std::array<int, 3>>;
-
-/// The part that a signature repeats, beginning where that is least in the order of index vectors, and how often.
-struct PrimitiveWord {
-  SignatureWord word;
-  int repetitions = 1;
-};
-PrimitiveWord primitive_word(const SignatureWord& signature);
-
 /// The points of one direction of a branch.
 struct CataloguedSection {
   std::string branch;
-  int number = 1;               ///< of the section in its file
-  SignatureWord own_signature;  ///< as its orbits begin
+  int number = 1;           ///< of the section in its file
+  Signature own_signature;  ///< as its orbits begin
   PrimitiveWord signature;
   std::vector<double> parameter;
   std::vector<int> labels;  ///< of each point; 0 without
@@ -70,7 +59,7 @@ class OrbitCatalogue {
                                        Eigen::Index row) const;
   /// The branches with an orbit of this signature and period at the parameter value, whose monitors are about these
   /// (NaN: not known), each once.
-  std::vector<std::string> branches_with(const SignatureWord& signature, double parameter, double period,
+  std::vector<std::string> branches_with(const Signature& signature, double parameter, double period,
                                          const std::vector<double>& monitors) const;
   /// The branch with this equilibrium. `size`: of states.
   std::string branch_with_state(double parameter, const Eigen::VectorXd& state, double size) const;
@@ -96,27 +85,5 @@ InterpolatedPoint interpolate(const std::vector<double>& coordinate, const Eigen
 
 /// Are these the numbers of the point, up to its uncertainty and the errors of runs? `size`: of numbers that matter.
 bool agrees(const InterpolatedPoint& point, const Eigen::VectorXd& numbers, double size = 0.0);
-
-// Are two labelled solutions at one parameter value the same orbit?
-//
-// Orbits cut by the same events are compared by their states where segments end, before the jumps: the same when these
-// agree for some rotation of the signature, compared until both orbits are back at their start. Of others, and of
-// smooth orbits, points of each are compared with the nearest ones on the curve of the other. An equilibrium has one
-// state.
-
-struct ComparedOrbit {
-  const LabelledSolution* solution = nullptr;
-  SignatureWord signature;  ///< with its repetitions
-};
-
-/// Largest difference of two orbits, as a share of the size of each state (its largest
-/// modulus on `a`, at least 1e-3 of that of all). States from 0 that are in `drifting`, which nothing depends on, are
-/// left out. Infinite where they cannot be compared: tori, other numbers of states.
-double orbit_distance(const ComparedOrbit& a, const ComparedOrbit& b, const std::vector<Eigen::Index>& drifting);
-
-/// Which states change their signs in the reflection that makes one periodic orbit of the other, to within `tolerance`
-/// as above; nothing where there is none of that kind.
-std::optional<std::vector<bool>> reflection(const LabelledSolution& a, const LabelledSolution& b,
-                                            const std::vector<Eigen::Index>& drifting, double tolerance);
 
 }  // namespace tchat

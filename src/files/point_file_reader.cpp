@@ -92,12 +92,12 @@ std::map<int, std::string> dictionary(std::string_view text) {
 }
 
 /// "[[1, 1, 1], [2, 2, 2]]"; empty for what is no such list.
-std::vector<std::array<int, 3>> signature_of(std::string_view text) {
+Signature signature_of(std::string_view text) {
   std::string numbers(text);
   std::replace_if(
       numbers.begin(), numbers.end(), [](char c) { return c == '[' || c == ']' || c == ','; }, ' ');
   const auto words = split_words(numbers);
-  std::vector<std::array<int, 3>> signature;
+  Signature signature;
   if (words.empty() || words.size() % 3 != 0) return {};
   for (std::size_t k = 0; k < words.size(); k += 3) {
     const auto field = parse_integer(words[k]), event = parse_integer(words[k + 1]), jump = parse_integer(words[k + 2]);

@@ -11,13 +11,13 @@
 /// out with a warning.
 #pragma once
 
-#include <array>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "model/index_vector.hpp"
 #include "model/parameter_vector.hpp"
 
 namespace tchat {
@@ -45,8 +45,8 @@ struct PointSection {
   std::map<int, std::string> parameters;
   std::map<int, std::string> events;  ///< names of event functions and jumps, likewise
   std::map<int, std::string> jumps;
-  std::vector<std::array<int, 3>> signature;  ///< field, event and jump of each segment; empty in files of others
-  std::vector<double> bounds;                 ///< RL0, RL1, A0, A1 to the digits of the header; empty without them
+  Signature signature;               ///< field, event and jump of each segment; empty in files of others
+  std::vector<double> bounds;        ///< RL0, RL1, A0, A1 to the digits of the header; empty without them
   std::vector<std::string> columns;  ///< names in full, headings in files without them; COLUMN(k) without header
   std::vector<PointRow> rows;
 

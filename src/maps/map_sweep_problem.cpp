@@ -78,7 +78,7 @@ AttractorSample MapSampler::operator()(const SweepPoint& point, const std::funct
   sample.kind = attractor.kind;
   sample.message = attractor.message;
   if (attractor.period > 0) sample.impacts = 0;
-  sample.range = map_->smooth().extent();
+  sample.sizes = map_->smooth().extent();
   sample.sections = attractor.points;
   sample.section_penetrations = attractor.penetrations;
   if (attractor.kind != AttractorKind::escape) sample.last.x = attractor.last;

@@ -190,6 +190,25 @@ Eigen::VectorXd sizes_from_ranges(const Eigen::VectorXd& ranges) {
   return ranges.cwiseMax(std::max(hardly * ranges.maxCoeff(), std::numeric_limits<double>::min()));
 }
 
+Eigen::VectorXd sizes_of_differences(const Eigen::VectorXd& low, const Eigen::VectorXd& high,
+                                     const std::vector<bool>& rounding, const std::vector<bool>& left_out) {
+  constexpr double share = 1e-3;
+  const auto has = [](const std::vector<bool>& flags, Eigen::Index i) {
+    const auto k = static_cast<std::size_t>(i);
+    return k < flags.size() && flags[k];
+  };
+  Eigen::VectorXd sizes = high - low;
+  double largest = 0.0;
+  for (Eigen::Index i = 0; i < sizes.size(); ++i)
+    if (!has(left_out, i)) largest = std::max(largest, sizes(i));
+  sizes += share * low.cwiseAbs().cwiseMax(high.cwiseAbs());
+  for (Eigen::Index i = 0; i < sizes.size(); ++i) {
+    if (has(rounding, i)) sizes(i) += share * largest;
+    if (has(left_out, i)) sizes(i) = std::numeric_limits<double>::infinity();
+  }
+  return sizes;
+}
+
 double length_in_sizes(const Eigen::VectorXd& d, const Eigen::VectorXd& sizes) {
   double sum = 0.0;
   for (Eigen::Index i = 0; i < d.size(); ++i)

@@ -80,6 +80,12 @@ double size_for_tolerance(double size);
 /// Sizes of differences of states that range so far: one that hardly moves is compared on the scale of the others.
 Eigen::VectorXd sizes_from_ranges(const Eigen::VectorXd& ranges);
 
+/// Sizes of differences of states of a motion between `low` and `high`: of each its range and 1e-3 of its largest
+/// value; of one that is nothing but rounding of zero 1e-3 of the largest range; infinite of one that is left out.
+/// Flags of states may be empty: none.
+Eigen::VectorXd sizes_of_differences(const Eigen::VectorXd& low, const Eigen::VectorXd& high,
+                                     const std::vector<bool>& rounding, const std::vector<bool>& left_out = {});
+
 /// |d| of a change d of states, each in units of its size: infinite where one without a size changes.
 double length_in_sizes(const Eigen::VectorXd& d, const Eigen::VectorXd& sizes);
 

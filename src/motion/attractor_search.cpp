@@ -91,9 +91,12 @@ std::vector<bool> AttractorSearch::left_out() const {
 std::string AttractorSearch::unsettled(const HybridSystem& system) const {
   const std::optional<EventRanges::Change> change = event_ranges_.changing(left_out());
   if (!change) return "";
-  return fmt::format("{} at {} still changes: it covers {:.2g} of the range that it did before",
-                     system.state_name(static_cast<int>(change->state) + 1),
-                     system.function_name(FunctionKind::event, change->index.event), change->range);
+  const std::string what =
+      change->shift > std::abs(1.0 - change->range)
+          ? fmt::format("it has moved by {:.2g} of the range that it covered before", change->shift)
+          : fmt::format("it covers {:.2g} of the range that it did before", change->range);
+  return fmt::format("{} at {} still changes: {}", system.state_name(static_cast<int>(change->state) + 1),
+                     system.function_name(FunctionKind::event, change->index.event), what);
 }
 
 std::string AttractorSearch::unbounded(const HybridSystem& system) const {

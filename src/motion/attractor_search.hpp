@@ -63,6 +63,8 @@ class AttractorSearch {
   /// yet.
   bool is_near_unstable_orbit() const { return is_near_unstable_; }
   const std::vector<Eigen::Index>& ignorable() const { return ignorable_; }
+  /// Which states are nothing but rounding of zero; empty: none.
+  const std::vector<bool>& rounding() const { return rounding_; }
   /// The range of a state that something depends on still grows: why the motion is on no attractor yet. "" where none
   /// does.
   std::string unbounded(const HybridSystem& system) const;

@@ -178,18 +178,8 @@ VectorXd Recurrence::scale(std::size_t segments) const {
     low = low.cwiseMin(back(i).low);
     high = high.cwiseMax(back(i).high);
   }
-  constexpr double share = 1e-3;
-  VectorXd range = high - low;
-  if (least_range_.size() > 0) return range.cwiseMax(least_range_);
-  double largest = 0.0;
-  for (Eigen::Index i = 0; i < range.size(); ++i)
-    if (!is_ignored(ignorable_, i)) largest = std::max(largest, range(i));
-  range += share * low.cwiseAbs().cwiseMax(high.cwiseAbs());
-  for (Eigen::Index i = 0; i < range.size(); ++i)
-    if (is_ignored(without_size_, i)) range(i) += share * largest;
-  for (Eigen::Index i = 0; i < range.size(); ++i)
-    if (is_ignored(ignorable_, i)) range(i) = std::numeric_limits<double>::infinity();
-  return range;
+  if (least_range_.size() > 0) return (high - low).cwiseMax(least_range_);
+  return sizes_of_differences(low, high, without_size_, ignorable_);
 }
 
 Signature Recurrence::last(std::size_t segments) const {
@@ -272,7 +262,8 @@ std::optional<EventRanges::Change> EventRanges::changing(const std::vector<bool>
       const double range = last.high(i) - last.low(i), was = before.high(i) - before.low(i);
       if (is_ignored(left_out, i) || !(std::max(range, was) > least * sizes_(i))) continue;
       const double shift = 0.5 * std::abs(last.low(i) + last.high(i) - before.low(i) - before.high(i));
-      if (range < same * was || was < same * range || shift > moved * was) return Change{index, i, range / was};
+      if (range < same * was || was < same * range || shift > moved * was)
+        return Change{index, i, range / was, shift / was};
     }
   }
   return std::nullopt;

@@ -111,8 +111,7 @@ class Recurrence {
   bool repeats_events(std::size_t period) const;
   /// Largest difference of the last `period` states from those before them, in units of scale(2 period).
   double difference(std::size_t period) const;
-  /// Range of each state over the last segments and 1e-3 of its largest value, of rounding 1e-3 of the largest range;
-  /// infinite where a state is ignored.
+  /// sizes_of_differences() over the last segments, infinite where a state is ignored.
   Eigen::VectorXd scale(std::size_t segments) const;
 
  private:
@@ -161,8 +160,8 @@ class EventRanges {
   void add(const SimulatedSegment& segment);
   struct Change {
     IndexVector index;
-    Eigen::Index state;  ///< from 0
-    double range;        ///< in the last half, in ranges of the quarter before
+    Eigen::Index state;   ///< from 0
+    double range, shift;  ///< range in the last half, and of its middle, in ranges of the quarter before
   };
   /// Where the range has become smaller or larger by a fifth, or has moved by a fifth; in no state of `left_out`.
   std::optional<Change> changing(const std::vector<bool>& left_out) const;

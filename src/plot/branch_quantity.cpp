@@ -179,8 +179,8 @@ std::vector<int> segments_at(const PointSection& section, const std::string& whe
     return same_letters(name != names.end() ? name->second : fmt::format("{} {}", otherwise, k), where);
   };
   for (std::size_t s = 0; s < section.signature.size(); ++s)
-    if (named(section.events, section.signature[s][1], "event") ||
-        named(section.jumps, section.signature[s][2], "jump"))
+    if (named(section.events, section.signature[s].event, "event") ||
+        named(section.jumps, section.signature[s].jump, "jump"))
       found.push_back(static_cast<int>(s));
   if (const auto number = parse_integer(where); number && *number >= 1 && *number <= section.segments)
     found.assign(1, *number - 1);

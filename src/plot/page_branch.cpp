@@ -176,14 +176,14 @@ class OrbitWriter {
   /// What the segment ends in; "" where the file does not say, and for a phase condition.
   std::string event_after(std::size_t s) const {
     if (section_.signature.empty()) return "";
-    const int event = section_.signature[s % section_.signature.size()][1];
+    const int event = section_.signature[s % section_.signature.size()].event;
     return event > 0 ? named(section_.events, event, "event") : "";
   }
 
   /// "jump impact", or "jump 2" without a name; "" where the file has no signature.
   std::string jump_after(std::size_t s) const {
     if (section_.signature.empty()) return "";
-    const int jump = section_.signature[s % section_.signature.size()][2];
+    const int jump = section_.signature[s % section_.signature.size()].jump;
     if (jump <= 0) return "";
     const auto name = section_.jumps.find(jump);
     return name != section_.jumps.end() ? "jump " + name->second : fmt::format("jump {}", jump);

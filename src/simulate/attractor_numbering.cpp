@@ -9,6 +9,9 @@
 #include <map>
 #include <tuple>
 
+#include "base/levels.hpp"
+#include "motion/orbit_identity.hpp"
+
 namespace tchat {
 
 namespace {
@@ -17,7 +20,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double infinite_distance = std::numeric_limits<double>::infinity();
-constexpr double same_orbit = 1e-3;        // relative to the range; recognition leaves 1e-6 / (1 - multiplier)
+constexpr double same_orbit = 1e-3;        // in sizes of differences; recognition leaves 1e-6 / (1 - multiplier)
+constexpr double same_rest = level::same;  // in sizes that the motion had
 constexpr double same_cloud = 0.25;        // means of some hundred points of motions that do not repeat themselves
 constexpr double to_neighbour = 0.1;       // from one value of a parameter to the next
 constexpr double to_next_of_branch = 1.0;  // where a branch joins them
@@ -26,66 +30,53 @@ constexpr std::size_t most_compared = 1000;
 
 bool repeats(const AttractorSample& sample) { return repeats(sample.kind); }
 
-double size_of(const AttractorSample& sample) {
-  return sample.identity.size() > 0 ? sample.identity.cwiseAbs().maxCoeff() : 0.0;
+ComparedOrbit cuts_of(const AttractorSample& sample) {
+  return {sample.signature, sample.identity, sample.sizes, {}, {}};
 }
 
-VectorXd scale_of(const AttractorSample& a, const AttractorSample& b) {
-  const VectorXd range = a.range.cwiseMax(b.range);
-  return floored_range(range, std::max(size_of(a), size_of(b)));
+VectorXd sizes_of(const AttractorSample& a, const AttractorSample& b) {
+  return a.sizes.cwiseMax(b.sizes).cwiseMax(std::numeric_limits<double>::min());
+}
+
+/// The largest difference, in sizes.
+double largest_in(const VectorXd& sizes, const MatrixXd& differences) {
+  return (differences.array().colwise() / sizes.array()).abs().maxCoeff();
+}
+
+/// Of two turns of one orbit a sweep sees one.
+double distance_of_orbits(const AttractorSample& a, const AttractorSample& b) {
+  return a.signature == b.signature ? compare_cuts(cuts_of(a), cuts_of(b)).distance : infinite_distance;
 }
 
 /// States of b turned so that they belong to those of a: a signature may repeat itself within a period. Empty when the
 /// signatures differ.
 MatrixXd aligned(const AttractorSample& a, const AttractorSample& b) {
-  const auto m = static_cast<Eigen::Index>(a.signature.size());
-  if (a.signature != b.signature || m != a.identity.cols() || m != b.identity.cols()) return {};
-  const VectorXd scale = scale_of(a, b);
-  double least = infinite_distance;
-  Eigen::Index best = 0;
-  for (Eigen::Index turn = 0; turn < m; ++turn) {
-    double largest = 0.0;
-    for (Eigen::Index s = 0; s < m && largest < least; ++s) {
-      const Eigen::Index t = (s + turn) % m;
-      if (a.signature[static_cast<std::size_t>(s)] != b.signature[static_cast<std::size_t>(t)]) {
-        largest = infinite_distance;
-        break;
-      }
-      const double d = ((a.identity.col(s) - b.identity.col(t)).array() / scale.array()).abs().maxCoeff();
-      largest = std::max(largest, d);
-    }
-    if (largest < least) best = turn;
-    least = std::min(least, largest);
-  }
-  MatrixXd states(b.identity.rows(), m);
-  for (Eigen::Index s = 0; s < m; ++s) states.col(s) = b.identity.col((s + best) % m);
+  if (a.signature != b.signature) return {};
+  const CutComparison comparison = compare_cuts(cuts_of(a), cuts_of(b));
+  if (!std::isfinite(comparison.distance)) return {};
+  MatrixXd states(b.identity.rows(), b.identity.cols());
+  for (Eigen::Index s = 0; s < states.cols(); ++s)
+    states.col(s) = b.identity.col((s + comparison.shift) % states.cols());
   return states;
-}
-
-double orbit_distance(const AttractorSample& a, const AttractorSample& b) {
-  const MatrixXd states = aligned(a, b);
-  if (states.size() == 0) return infinite_distance;
-  return ((a.identity - states).array().colwise() / scale_of(a, b).array()).abs().maxCoeff();
 }
 
 /// Do three orbits at neighbouring values lie on one smooth branch, as far as they are apart?
 bool lie_on_branch(const AttractorSample& a, const AttractorSample& b, const AttractorSample& c) {
   const MatrixXd before = aligned(b, a), after = aligned(b, c);
   if (before.size() == 0 || after.size() == 0) return false;
-  const auto size = [&](const MatrixXd& d) { return (d.array().colwise() / scale_of(a, c).array()).abs().maxCoeff(); };
+  const auto size = [&](const MatrixXd& d) { return largest_in(sizes_of(a, c), d); };
   const double first = std::min(size(b.identity - before), size(after - b.identity));
   return size(before - 2.0 * b.identity + after) <= bend * first;
 }
 
 double cloud_distance(const AttractorSample& a, const AttractorSample& b) {
   if (a.identity.cols() == 0 || b.identity.cols() == 0) return infinite_distance;
-  const VectorXd difference = a.identity.rowwise().mean() - b.identity.rowwise().mean();
-  return (difference.array() / scale_of(a, b).array()).abs().maxCoeff();
+  return largest_in(sizes_of(a, b), a.identity.rowwise().mean() - b.identity.rowwise().mean());
 }
 
 double rest_distance(const AttractorSample& a, const AttractorSample& b) {
   if (a.last.x.size() == 0 || b.last.x.size() == 0) return infinite_distance;
-  return (a.last.x - b.last.x).norm() / (1.0 + std::max(a.last.x.norm(), b.last.x.norm()));
+  return largest_in(sizes_of(a, b), a.last.x - b.last.x);
 }
 
 std::string mode_text(const std::vector<IndexVector>& watched) {
@@ -247,14 +238,14 @@ bool is_attractor(AttractorKind kind) {
 
 double attractor_distance(const AttractorSample& a, const AttractorSample& b) {
   if (a.kind != b.kind) return infinite_distance;
-  if (repeats(a)) return orbit_distance(a, b);
+  if (repeats(a)) return distance_of_orbits(a, b);
   if (a.kind == AttractorKind::rest) return rest_distance(a, b);
   return cloud_distance(a, b);
 }
 
 bool is_same_attractor(const AttractorSample& a, const AttractorSample& b) {
-  const bool has_few_points = repeats(a) || a.kind == AttractorKind::rest;
-  return attractor_distance(a, b) <= (has_few_points ? same_orbit : same_cloud);
+  const double most = repeats(a) ? same_orbit : a.kind == AttractorKind::rest ? same_rest : same_cloud;
+  return attractor_distance(a, b) <= most;
 }
 
 std::vector<AttractorSample> distinct_attractors(const std::vector<SampleRecord>& records) {

@@ -15,8 +15,8 @@
 
 namespace tchat {
 
-/// Largest difference of section states, relative to the range of the motion; infinite for another kind or signature.
-/// Of motions that do not repeat themselves the difference of the means.
+/// Largest difference of section states, in sizes of their differences (motion/orbit_identity.hpp); infinite for
+/// another kind or signature. Of motions that do not repeat themselves the difference of the means.
 double attractor_distance(const AttractorSample& a, const AttractorSample& b);
 /// Nearer than what recognition leaves open.
 bool is_same_attractor(const AttractorSample& a, const AttractorSample& b);

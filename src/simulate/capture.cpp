@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <limits>
 
 #include "model/events.hpp"
 #include "motion/orbit_correction.hpp"
@@ -79,11 +80,11 @@ CaptureRegion capture_region(const HybridSystem& system, const AttractorSample& 
   region.centre = sample.last.x;
   const ReturnMap map = return_map(system, sample.signature, region.centre, par);
   if (!map.ok || !map.derivative.allFinite()) return region;
-  const VectorXd range = floored_range(sample.range, sample.last.x.cwiseAbs().maxCoeff());
-  region.weight = decay_weight(map.derivative, range);
-  if (!region.weight.allFinite() || region.weight.norm() * range.squaredNorm() > slowest) return region;
+  const VectorXd sizes = sample.sizes.cwiseMax(std::numeric_limits<double>::min());
+  region.weight = decay_weight(map.derivative, sizes);
+  if (!region.weight.allFinite() || region.weight.norm() * sizes.squaredNorm() > slowest) return region;
 
-  const CaptureProbe probe(system, par, region, map.segments.back().end, range);
+  const CaptureProbe probe(system, par, region, map.segments.back().end, sizes);
   double radius = widest;
   for (int shrinking = 0; shrinking < shrinkings; ++shrinking, radius *= 0.5) {
     bool all_come = true;

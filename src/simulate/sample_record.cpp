@@ -140,12 +140,6 @@ std::string one_line(std::string text) {
 
 }  // namespace
 
-Eigen::VectorXd floored_range(const Eigen::VectorXd& range, double size) {
-  constexpr double hardly = 1e-3;  // of the largest range
-  const double least = std::max(level::negligible * size, std::numeric_limits<double>::min());
-  return range.array() + std::max(hardly * range.maxCoeff(), least);
-}
-
 std::string hashed_line(const std::string& text) { return fmt::format("{} {:016x}\n", text, line_hash(text)); }
 
 std::string record_line(const SampleRecord& record) {
@@ -165,7 +159,7 @@ std::string record_line(const SampleRecord& record) {
   line.integers(sample.section_events);
   line.vector(sample.section_penetrations);
   line.matrix(sample.identity);
-  line.vector(sample.range);
+  line.vector(sample.sizes);
   line.vector(sample.last.x);
   line.index_vectors(sample.last.watched);
   if (sample.largest.size() > 0) {
@@ -201,7 +195,7 @@ std::optional<SampleRecord> read_record(const std::string& line) {
   sample.section_events = reader.integers();
   sample.section_penetrations = reader.vector();
   sample.identity = reader.matrix();
-  sample.range = reader.vector();
+  sample.sizes = reader.vector();
   sample.last.x = reader.vector();
   sample.last.watched = reader.index_vectors();
   if (reader.rest().starts_with(std::string(largest_values) + ' ')) {

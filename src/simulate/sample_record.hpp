@@ -52,16 +52,12 @@ struct AttractorSample {
   /// Section states by which equal attractors are known; periodic: one period, of every event in the order of
   /// `signature`. n x (number of them)
   Eigen::MatrixXd identity;
-  Eigen::VectorXd range;  ///< of each state over the attractor, the scale of differences; n
+  Eigen::VectorXd sizes;  ///< of differences of each state over the attractor, at rest the sizes of the states; n
   MotionState last;       ///< to go on from at a neighbouring value; x is empty where there is nothing to go on from
   long events = 0;        ///< over which it was seen, from the start to the verdict; 0: not told
   int known = 0;          ///< number, from 1, of the known attractor that has captured it, which is then all there is
   std::string message;    ///< why it has not settled, one line; empty when there is nothing to say
 };
-
-/// The scale of differences of states: a state that hardly moves is compared on that of the others, and none on that of
-/// rounding. `size`: of the largest state.
-Eigen::VectorXd floored_range(const Eigen::VectorXd& range, double size);
 
 /// Thrown where a value has been given up because of a signal.
 class SampleInterrupted : public ComputationError {

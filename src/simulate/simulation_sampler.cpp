@@ -90,7 +90,7 @@ class SampleRun {
       go_on(on_orbit, exponents, turns * static_cast<long>(kept_.size()));
       keep_exponents(exponents.spectrum());
     }
-    finish();
+    finish(simulation);
     if (setup_.recording.largest) measure_largest(simulation);
     return std::move(sample_);
   }
@@ -292,10 +292,10 @@ class SampleRun {
     while (is_transient && kept_.size() > most) kept_.pop_front();
   }
 
-  void finish() {
+  void finish(const HybridSimulation& simulation) {
     if (kept_.empty()) return;
     rotate_to_smallest();
-    measure_range();
+    measure_sizes(simulation);
     if (repeats(sample_.kind)) describe_period();
     describe_states();
     choose_hand_over();
@@ -321,15 +321,18 @@ class SampleRun {
     std::rotate(kept_.begin(), kept_.begin() + static_cast<std::ptrdiff_t>(least), kept_.end());
   }
 
-  void measure_range() {
+  void measure_sizes(const HybridSimulation& simulation) {
+    if (sample_.kind == AttractorKind::rest) {
+      sample_.sizes = simulation.sizes().cwiseMax(sizes_in(system_, {&kept_.back(), 1}, par_).sizes());
+      return;
+    }
     VectorXd low = kept_.front().low;
     VectorXd high = kept_.front().high;
     for (const SimulatedSegment& segment : kept_) {
       low = low.cwiseMin(segment.low);
       high = high.cwiseMax(segment.high);
     }
-    sample_.range = high - low;
-    for (const Eigen::Index k : search_.ignorable()) sample_.range(k) = 0.0;
+    sample_.sizes = sizes_of_differences(low, high, search_.rounding());
   }
 
   void measure_largest(const HybridSimulation& simulation) {

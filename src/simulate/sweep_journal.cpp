@@ -52,7 +52,7 @@ void check_states(const AttractorSample& sample, int dimension, RangeCheck& chec
   if (sample.sections.cols() > 0) check.count("a recorded state", sample.sections.rows(), n, false);
   if (sample.largest.cols() > 0) check.count("a list of largest values", sample.largest.rows(), n, false);
   if (sample.identity.cols() > 0) check.count("a section state", sample.identity.rows(), n, false);
-  check.count("the range", sample.range.size(), n, sample.identity.cols() == 0);
+  check.count("the sizes", sample.sizes.size(), n, sample.identity.cols() == 0);
   check.count("the last state", sample.last.x.size(), n, true);
   check.require(!is_attractor(sample.kind) || sample.last.x.allFinite(), "the last state is not finite");
 }
@@ -82,7 +82,7 @@ std::string fault_of(const SampleRecord& record, const RecordLimits& limits) {
   check_states(sample, limits.dimension, check);
   if (is_known && sample.kind == AttractorKind::periodic) {
     check.require(!sample.signature.empty(), "a periodic attractor has no signature");
-    check.count("the range", sample.range.size(), limits.dimension, false);
+    check.count("the sizes", sample.sizes.size(), limits.dimension, false);
     check.count("the last state", sample.last.x.size(), limits.dimension, false);
   }
   return check.fault();

@@ -14,7 +14,7 @@ AttractorSample orbit(const std::vector<double>& states, const IndexVector& inde
   sample.identity.resize(1, static_cast<Eigen::Index>(states.size()));
   for (std::size_t s = 0; s < states.size(); ++s) sample.identity(0, static_cast<Eigen::Index>(s)) = states[s];
   sample.signature.assign(states.size(), index);
-  sample.range = Eigen::VectorXd::Ones(1);
+  sample.sizes = Eigen::VectorXd::Ones(1);
   sample.last.x = sample.identity.col(0);
   return sample;
 }

@@ -146,7 +146,7 @@ TEST_CASE("a record of a journal is read back to the last bit, and a damaged one
   sample.section_penetrations = Eigen::VectorXd::Random(4);
   sample.identity = Eigen::MatrixXd::Random(3, 2);
   if (has_largest) sample.largest = Eigen::MatrixXd::Random(3, 4);
-  sample.range = Eigen::VectorXd::Random(3);
+  sample.sizes = Eigen::VectorXd::Random(3);
   sample.last = {Eigen::VectorXd::Random(3), {{1, 1, 1}, {1, 2, 2}}};
   sample.known = 3;
   sample.message = "two\nlines of it";

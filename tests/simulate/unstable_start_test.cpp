@@ -127,7 +127,7 @@ TEST_CASE("a motion on or next to an unstable cycle is not chaotic, and settles 
           sampled(system_of<TwoCycles>(), Eigen::Vector3d(1.0 + distance, 0.0, 0.0), parameters({rate, -0.1}));
       CHECK(sample.kind != AttractorKind::chaotic);
       CHECK(sample.kind != AttractorKind::quasi_periodic);
-      if (sample.kind == AttractorKind::periodic) CHECK(sample.range(0) == Approx(4.0).epsilon(1e-3));
+      if (sample.kind == AttractorKind::periodic) CHECK(sample.sizes(0) == Approx(4.0).epsilon(1e-3));
       if (rate >= 5e-3 && distance >= 1e-6) CHECK(sample.kind == AttractorKind::periodic);
     }
 }
