@@ -350,6 +350,7 @@ void CurveRounds::describe(ExploredCurve& curve) const {
   curve.first_from = least(0), curve.second_from = least(1), curve.first_to = most(0), curve.second_to = most(1);
   curve.points = files.record.points;
   curve.inadmissible = files.record.inadmissible;
+  curve.lost = files.record.lost;
   for (const Labelled& label : labels_of(files))
     curve.labels.push_back({label.label,
                             label.type,

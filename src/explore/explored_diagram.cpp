@@ -97,6 +97,21 @@ std::string label_text(const ExploredLabel& label) {
   return text;
 }
 
+std::string losses_json(const std::vector<RecordedLoss>& losses) {
+  return json_list(losses, [](const RecordedLoss& lost) {
+    return fmt::format(R"({{"from": {}, "to": {}, "text": {}}})", json(lost.from), json(lost.to), json(lost.text));
+  });
+}
+
+std::string losses_text(const std::vector<RecordedLoss>& losses, const std::string& indent,
+                        const std::string& parameter) {
+  std::string text;
+  for (const RecordedLoss& lost : losses)
+    text += fmt::format("{}    a special point may be missing between {} = {:.8g} and {:.8g}: {}\n", indent, parameter,
+                        lost.from, lost.to, lost.text);
+  return text;
+}
+
 std::string branch_json(const ExploredBranch& branch) {
   const std::string labels = json_list(branch.labels, [](const ExploredLabel& label) {
     return fmt::format(R"({{"label": {}, "type": {}, "parameter": {}, "leads_to": {}, "remark": {}, "curve": {}}})",
@@ -104,14 +119,14 @@ std::string branch_json(const ExploredBranch& branch) {
                        json(label.remark), json(label.curve));
   });
   return fmt::format(
-      R"({{"name": {}, "parent": {}, "origin": {}, "mirror_of": {}, "from": {}, "to": {}, "signatures": {}, "ends": {}, "labels": {}, "commands": {}}})",
+      R"({{"name": {}, "parent": {}, "origin": {}, "mirror_of": {}, "from": {}, "to": {}, "signatures": {}, "ends": {}, "may_be_missing": {}, "labels": {}, "commands": {}}})",
       json(branch.name), json(branch.parent), json(branch.origin), json(branch.mirror_of), json(branch.from),
       json(branch.to), json_list(branch.signatures),
       json_list(branch.ends,
                 [](const RecordedEnd& end) {
                   return fmt::format(R"({{"reason": {}, "text": {}}})", json(end.reason), json(end.text));
                 }),
-      labels, lines_json(branch.job));
+      losses_json(branch.lost), labels, lines_json(branch.job));
 }
 
 std::string tree_text(const ExploredDiagram& diagram) {
@@ -122,6 +137,7 @@ std::string tree_text(const ExploredDiagram& diagram) {
       const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
       text += fmt::format("{}{}  {:.6g} to {:.6g}, {}\n", indent, branch.name, branch.from, branch.to, branch.origin);
       for (const ExploredLabel& label : branch.labels) text += fmt::format("{}    {}\n", indent, label_text(label));
+      text += losses_text(branch.lost, indent, diagram.parameter);
       for (const RecordedEnd& end : branch.ends) text += fmt::format("{}    ends: {}\n", indent, end.text);
       add(branch.name, depth + 1);
     }
@@ -186,6 +202,7 @@ std::string curve_text(const ExploredCurves& all, const ExploredCurve& curve) {
   if (curve.inadmissible > 0)
     text += fmt::format("    {} of {} points are inadmissible\n", curve.inadmissible, curve.points);
   for (const CurveEnd& end : curve.ends) text += "    " + end_text(end) + "\n";
+  text += losses_text(curve.lost, "", all.first);
   for (const CurveLabel& label : curve.labels) text += "    " + label_text(label) + "\n";
   return text;
 }
@@ -221,11 +238,12 @@ std::string curve_json(const ExploredCurve& curve) {
   };
   return fmt::format(
       R"({{"name": {}, "kind": {}, "parent": {}, "origin": {}, "first": [{}, {}], "second": [{}, {}], "points": {}, )"
-      R"("inadmissible": {}, "signatures": {}, "ends": {}, "labels": {}, "commands": {}}})",
+      R"("inadmissible": {}, "signatures": {}, "ends": {}, "may_be_missing": {}, "labels": {}, "commands": {}}})",
       json_value(curve.name), json_value(curve.kind), json_value(curve.parent), json_value(curve.origin),
       json_value(curve.first_from), json_value(curve.first_to), json_value(curve.second_from),
       json_value(curve.second_to), curve.points, curve.inadmissible, json_list(curve.signatures),
-      json_list(curve.ends, end_json), json_list(curve.labels, label_json), lines_json(curve.job));
+      json_list(curve.ends, end_json), losses_json(curve.lost), json_list(curve.labels, label_json),
+      lines_json(curve.job));
 }
 
 std::string joint_json(const JoinedPoint& point) {

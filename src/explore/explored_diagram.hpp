@@ -48,7 +48,8 @@ struct ExploredBranch {
   bool has_returns = false;     ///< one impact in several returns to grazing, or from such a branch
   double from = 0.0, to = 0.0;  ///< range of the parameter
   std::vector<std::string> signatures;
-  std::vector<RecordedEnd> ends;  ///< why each direction ended
+  std::vector<RecordedEnd> ends;   ///< why each direction ended
+  std::vector<RecordedLoss> lost;  ///< special points that may be missing
   std::vector<ExploredLabel> labels;
   CommandJob job;
 };
@@ -124,6 +125,7 @@ struct ExploredCurve {
   bool has_returns = false;  ///< from a slice, or a branch that has
   std::vector<std::string> signatures;
   std::vector<CurveEnd> ends;
+  std::vector<RecordedLoss> lost;
   std::vector<CurveLabel> labels;
   CommandJob job;
 };

@@ -381,6 +381,7 @@ class Explorer {
     for (CataloguedSection& section : sections) catalogue_.add(std::move(section));
     describe_points(points, commands_.range(), branch);
     branch.ends = record.ends;
+    branch.lost = record.lost;
     set_outcome(candidate, branch.name, "");
     diagram_.branches.push_back(branch);
     show(fmt::format("{}: {}, {} = {:.6g} to {:.6g}\n", branch.name, branch.origin, diagram_.parameter, branch.from,

@@ -19,6 +19,7 @@ RunRecord run_record(const std::string& path) {
     }
     if (point.label > 0) record.admissible[point.label] = point.admissible;
     if (point.end) record.ends.push_back(*point.end);
+    record.lost.insert(record.lost.end(), point.lost.begin(), point.lost.end());
   }
   record.only_at_start = some_beyond && !some_left;
   return record;
@@ -33,8 +34,10 @@ int other_field_at_rest(const HybridSystem& system, const LabelledSolution& solu
   for (int i = 1; i <= system.count(FunctionKind::field); ++i) {
     if (i == field) continue;
     Eigen::VectorXd f(n);
-    system.value(FunctionKind::field, i, x.data(), own.parameters.data(), f.data());
-    if (f.norm() <= at_rest * (1.0 + x.norm())) return i;
+    Eigen::MatrixXd by_state(n, n);
+    system.first(FunctionKind::field, i, x.data(), own.parameters.data(), {}, f.data(), by_state.data(), nullptr);
+    const Eigen::VectorXd terms = by_state.cwiseAbs() * x.cwiseAbs();
+    if ((f.cwiseAbs().array() <= at_rest * terms.array()).all()) return i;
   }
   return 0;
 }

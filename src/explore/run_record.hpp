@@ -1,5 +1,5 @@
-/// What the files of a run tell beside its points: which are admissible, why each direction ended, other fields at
-/// rest.
+/// What the files of a run tell beside its points: which are admissible, why each direction ended, where a special
+/// point may be missing, other fields at rest.
 #pragma once
 
 #include <map>
@@ -18,6 +18,7 @@ struct RunRecord {
   std::map<int, bool> admissible;  ///< by label
   bool only_at_start = false;      ///< there are points beyond the first one, and none of them is admissible
   std::vector<RecordedEnd> ends;   ///< of each direction
+  std::vector<RecordedLoss> lost;  ///< special points that may be missing
 };
 
 /// By the d-file. Throws UserError where it cannot be read.

@@ -150,6 +150,16 @@ std::string format_test_functions(const std::vector<TestFunctionLine>& functions
   return text;
 }
 
+namespace {
+
+std::string on_one_line(std::string_view text) {
+  std::string line = harmless(text);
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  return line;
+}
+
+}  // namespace
+
 std::string format_note(int branch, int point, std::string_view text) {
   const std::string start = prefix(branch, point) + "  NOTE: ";
   std::string note = start;
@@ -158,9 +168,11 @@ std::string format_note(int branch, int point, std::string_view text) {
 }
 
 std::string format_branch_end(int branch, int point, std::string_view reason, std::string_view text) {
-  std::string line = harmless(text);
-  std::replace(line.begin(), line.end(), '\n', ' ');
-  return fmt::format("{}  END {}: {}\n", prefix(branch, point), reason, line);
+  return fmt::format("{}  END {}: {}\n", prefix(branch, point), reason, on_one_line(text));
+}
+
+std::string format_lost_point(int branch, int point, double from, double to, std::string_view text) {
+  return fmt::format("{}  LOST {:.8g} {:.8g}: {}\n", prefix(branch, point), from, to, on_one_line(text));
 }
 
 std::string format_end_of_run() { return format_bar() + std::string(end_of_run) + '\n'; }
@@ -216,6 +228,8 @@ class Blocks {
       close();
     else if (contains(words, "Multipliers:") || contains(words, "Eigenvalues:"))
       multipliers_.clear();
+    else if (words.size() > 4 && words[2] == "LOST" && words[4].ends_with(':'))
+      take_loss(line, words);
     else if (contains(words, "NOTE:"))
       take_note(line, words);
     else if (words.size() > 3 && words[2] == "END" && words[3].ends_with(':'))
@@ -257,9 +271,17 @@ class Blocks {
   void take_end(std::string_view line, const Words& words) {
     if (points_.empty()) return;
     const std::string_view reason = words[3].substr(0, words[3].size() - 1);
-    const std::string_view text =
-        line.substr(static_cast<std::size_t>(words[3].data() + words[3].size() - line.data()));
-    points_.back().end = RecordedEnd{std::string(reason), std::string(trimmed(text))};
+    points_.back().end = RecordedEnd{std::string(reason), text_behind(line, words[3])};
+  }
+
+  /// `1  12  LOST 3.1 3.2: text`
+  void take_loss(std::string_view line, const Words& words) {
+    const auto from = parse_fortran_real(words[3]), to = parse_fortran_real(words[4].substr(0, words[4].size() - 1));
+    if (!points_.empty() && from && to) points_.back().lost.push_back({*from, *to, text_behind(line, words[4])});
+  }
+
+  static std::string text_behind(std::string_view line, std::string_view word) {
+    return std::string(trimmed(line.substr(static_cast<std::size_t>(word.data() + word.size() - line.data()))));
   }
 
   /// `... xi_1 = 0, xi_2 = 0`

@@ -78,6 +78,10 @@ std::string format_note(int branch, int point, std::string_view text);
 /// is written on one line.
 std::string format_branch_end(int branch, int point, std::string_view reason, std::string_view text);
 
+/// `    1    12  LOST from to: text`: between these values of ICP(1) a special point may be missing; `text` is written
+/// on one line.
+std::string format_lost_point(int branch, int point, double from, double to, std::string_view text);
+
 /// Bar and the last line of a complete file. Nothing may follow but another run's part.
 std::string format_end_of_run();
 
@@ -89,12 +93,19 @@ bool ends_complete_run(std::string_view text);
 //
 // Only what AUTO's own readers rely on is looked at: the bars of 47 `=` between blocks, the line below a
 // `BR PT TY LAB` heading, lines `Multiplier k re im`, `Eigenvalue k: re im` and `Iterations : n`; and of this program
-// the word `inadmissible`, notes, among them `xi_1 = 0, xi_2 = 0` and that of a normal form, and why a branch ends.
+// the word `inadmissible`, notes, among them `xi_1 = 0, xi_2 = 0` and that of a normal form, where a special
+// point may be missing, and why a branch ends.
 
 /// Why a branch has no further points in one direction.
 struct RecordedEnd {
   std::string reason;  ///< a word: end_word() (run/branch_writer.hpp)
   std::string text;    ///< for people
+};
+
+/// Where a special point may be missing, on the way to a point.
+struct RecordedLoss {
+  double from = 0.0, to = 0.0;  ///< values of ICP(1), in the direction of the branch
+  std::string text;             ///< for people
 };
 
 struct DiagnosticPoint {
@@ -110,6 +121,7 @@ struct DiagnosticPoint {
   std::optional<double> parameter;                ///< the first number after the label: ICP(1), to 6 digits
   std::optional<int> iterations;                  ///< Newton iterations
   std::optional<RecordedEnd> end;                 ///< the branch ends here
+  std::vector<RecordedLoss> lost;                 ///< special points that may be missing before it
 };
 
 /// The points in file order; lines that are not understood are skipped. Throws UserError when the file cannot be read.

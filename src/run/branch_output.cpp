@@ -122,6 +122,10 @@ class DiagnosticsFileOutput final : public BranchOutput {
     append_next_step(text_, section_.branch, point_number, ds);
     files_.add_diagnostics(text_);
   }
+  void lost(const LostPoint& point) override {
+    files_.add_diagnostics(format_lost_point(section_.branch, point.number, point.from, point.to, point.text));
+  }
+
   void note(int point_number, const std::string& text) override {
     files_.add_diagnostics(format_note(section_.branch, point_number, text));
   }

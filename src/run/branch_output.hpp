@@ -48,6 +48,7 @@ class BranchOutput {
   virtual void next_step(int /*point_number*/, double /*ds*/) {}
   /// About the point that is being computed, for the record.
   virtual void note(int /*point_number*/, const std::string& /*text*/) {}
+  virtual void lost(const LostPoint& /*point*/) {}
   /// For the user to see at once.
   virtual void message(const std::string& /*text*/) {}
   virtual void end_section() {}

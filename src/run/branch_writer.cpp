@@ -228,7 +228,7 @@ void BranchWriter::mesh_changed(int point_number, double parameter, const std::s
 }
 
 void BranchWriter::lost(const LostPoint& point) {
-  note(point.number, point.text);
+  for (const auto& output : outputs_) output->lost(point);
   show_message(fmt::format("warning: point {}, {} = {:.8g} to {:.8g}: {}", point.number, principal_name(), point.from,
                            point.to, point.text));
 }

@@ -92,3 +92,16 @@ TEST_CASE("a normal form is read from its note, whatever else that says") {
   CHECK_FALSE(form_of("normal form a = 0.5"));
   CHECK_FALSE(form_of("normal form a = x +- 2"));
 }
+
+TEST_CASE("where a special point may be missing is read back, whatever its text") {
+  const std::string text =
+      format_lost_point(1, 2, 3.14159265, -2e-7, "a multiplier goes from -0.79 to -1.1:\nthrough -1");
+  CHECK(text.find('\n') == text.size() - 1);
+  const auto points = parse_diagnostics("  BR    PT  TY  LAB      alpha\n   1     2        0  3.14E+00\n" + text);
+  REQUIRE(points.size() == 1);
+  REQUIRE(points.front().lost.size() == 1);
+  CHECK(points.front().lost.front().from == Approx(3.1415927).epsilon(1e-8));
+  CHECK(points.front().lost.front().to == -2e-7);
+  CHECK(points.front().lost.front().text == "a multiplier goes from -0.79 to -1.1: through -1");
+  CHECK(parse_diagnostics("   1     2  LOST a b: text\n").empty());
+}

@@ -18,6 +18,8 @@ _PLACES = {"grazing": "grazing-curve"}  # what resegment(to=) calls shorter
 
 
 End = collections.namedtuple("End", "reason text")
+Missing = collections.namedtuple("Missing", "start end text")
+Missing.__doc__ = """Between these values of the first parameter a special point may be missing, and why."""
 End.__doc__ = """Why a branch has no further points in one direction: a word ("bound", "points", "closed",
 "special_point", "curve_end", "equilibrium", "no_orbit", "unresolved", "no_convergence", "first_step", "interrupted"),
 and the sentence of tchat."""
@@ -77,6 +79,7 @@ class Branch:
                         along the branch
     branch.labels       the labelled points (Label); branch.PD those of a type, branch.label("PD1") one of them
     branch.stopped      why it has no further points, an End for each direction: reason, text
+    branch.may_be_missing  where a special point may be missing, a list of Missing: start, end, text
     branch.screen       what tchat printed, where it was run from here
 
     "omega" in branch, branch.columns: the columns of the table. A Branch is of the files that it has read: where another
@@ -99,7 +102,9 @@ class Branch:
         begins = [row for row in range(len(pieces)) if row == 0 or pieces[row] != pieces[row - 1]] + [len(pieces)]
         self.multipliers = _tracked(self.multipliers, list(zip(begins, begins[1:])))
         self._labels = None
-        self.stopped = self._ends()
+        self.stopped = [End(*found) for found in self._recorded(r"END (\w+): (.*)")]
+        self.may_be_missing = [Missing(float(start), float(end), text)
+                               for start, end, text in self._recorded(r"LOST (\S+) (\S+): (.*)")]
 
     def _file_state(self):
         try:
@@ -114,10 +119,11 @@ class Branch:
             raise Error("%s: another run has replaced this file since the branch was read; read it again with "
                         "tchat.load(), or give runs names of their own with name=" % self.path)
 
-    def _ends(self):
+    def _recorded(self, form):
+        """What the lines of this form in the d-file say."""
         try:
             with open(_beside(self._file, "d"), encoding="utf-8", errors="replace") as file:
-                return [End(*found) for found in re.findall(r"^ *[0-9]+ +[0-9]+  END (\w+): (.*)$", file.read(), re.M)]
+                return re.findall(r"^ *[0-9]+ +[0-9]+  %s$" % form, file.read(), re.M)
         except OSError:
             return []
 
@@ -255,6 +261,8 @@ class Branch:
 
     def __repr__(self):
         text = "%s: %d points, %d of them with labels" % (self.path, len(self), np.count_nonzero(self["label"] > 0))
+        for one in self.may_be_missing:
+            text += "; a special point may be missing between %g and %g: %s" % one
         return text + "".join("; stopped: %s" % end.text for end in self.stopped)
 
 
