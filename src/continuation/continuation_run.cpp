@@ -130,6 +130,10 @@ BranchSummary ContinuationRun::run(PathPoint start) {
       break;
     }
     if (!may_go_to_next()) break;
+    if (const std::string bound = bound_at_start(); !bound.empty()) {
+      end(EndReason::on_bound, bound);
+      break;
+    }
     const std::optional<double> to_first = move_to_first_point();
     const bool is_there = to_first && std::abs(*to_first) <= same_place * location_accuracy(settings_);
     special = is_there ? SpecialPoint{} : advance();
@@ -363,6 +367,18 @@ bool ContinuationRun::take_step() {
   }
 }
 
+/// Where a branch of doubled orbits meets the one that it was born from, its mesh, which is not that of one turn twice
+/// over, may lead on along that one.
+std::string ContinuationRun::shorter_orbit() {
+  constexpr int enough = 3;  // points
+  const int parts = analysis_->like_parts(here_.orbit);
+  points_in_parts_ = parts == 1 ? 0 : points_in_parts_ + 1;
+  has_whole_orbits_ = has_whole_orbits_ || parts == 1;
+  if (!has_whole_orbits_ || points_in_parts_ < enough) return "";
+  return fmt::format("the last {} orbits are those of {} of the period, run {}: the branch ends where these are born",
+                     enough, parts == 2 ? "half" : "a third", parts == 2 ? "twice" : "three times");
+}
+
 /// What the point here_ is after all: special already, the end of the branch, a regular output point, or nothing.
 SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
   const BranchBounds* left = nullptr;
@@ -395,6 +411,8 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
     end(EndReason::interrupted, "");
   else if (const std::string none = system_.why_no_solution(here_.orbit); !none.empty())
     end(EndReason::no_orbit, none);
+  else if (const std::string shorter = shorter_orbit(); !shorter.empty())
+    end(EndReason::no_orbit, shorter);
   else if (const std::string why = settings_.unresolved ? settings_.unresolved(here_.orbit) : ""; !why.empty())
     end(EndReason::unresolved, why);
   if (is_special) return special;
@@ -588,6 +606,22 @@ std::string ContinuationRun::exceeded_bound(const Candidate& at) const {
 
 std::string ContinuationRun::passed_end() const {
   return end_text(analysis_->passed_infinity(here_, next_.point, next_.ds));
+}
+
+/// Of a branch that is to end on its bounds, starts on one of them, and goes beyond it.
+std::string ContinuationRun::bound_at_start() const {
+  if (!settings_.clip || number_ != settings_.first_number) return "";
+  for (const BranchBounds& bounds : bounds_) {
+    const double from = bounds.value(here_.orbit, follower_.condensed().rule());
+    const double to = bounds.value(next_.point.orbit, follower_.condensed().rule());
+    const double size = system_.system().parameter_size(bounds.parameter, from);
+    if (is_beyond(settings_, bounds, from, size) || !is_beyond(settings_, bounds, to, size)) continue;
+    const double bound = to > from ? bounds.most : bounds.least;
+    if (std::abs(from - bound) <= location_accuracy(settings_) * size)
+      return fmt::format("{} = {:.10g}, the bound {}, where the branch starts", bounds.quantity, from,
+                         to > from ? bounds.most_keyword : bounds.least_keyword);
+  }
+  return "";
 }
 
 std::string ContinuationRun::passed_zero_duration() const {

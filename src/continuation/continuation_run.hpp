@@ -103,6 +103,8 @@ class ContinuationRun {
   bool is_near_end() const;
   std::string passed_end() const;
   std::string passed_zero_duration() const;
+  std::string bound_at_start() const;
+  std::string shorter_orbit();
   std::string end_text(const std::string& what) const;
   bool may_go_to_next();
   void write_last_again(PointType type);
@@ -117,6 +119,8 @@ class ContinuationRun {
   SpecialPointSearch search_;
   StepSize step_;
   OrbitTrend trend_;
+  bool has_whole_orbits_ = false;  // there was one that no shorter orbit makes
+  int points_in_parts_ = 0;        // of the last points, which have been such
   ClosedBranch closed_;
   std::vector<BranchBounds> bounds_;  // all that are finite
   PathPoint here_;                    // the last accepted point, moved to a new mesh where one was due

@@ -105,6 +105,8 @@ class BranchAnalysis {
   virtual std::string passed_zero(const Orbit& /*from*/, const Orbit& /*to*/) const { return ""; }
   /// The same of the duration of a segment.
   virtual std::string passed_zero_segment(const Orbit& /*from*/, const Orbit& /*to*/) const { return ""; }
+  /// In how many like parts is x, which another solution makes, run round so often? 1 where it is none.
+  virtual int like_parts(const Orbit& /*x*/) const { return 1; }
   /// What x, the last point of a branch whose period has grown so, tends to, in a sentence; "" if nothing is known.
   virtual std::string tendency(const Orbit& /*x*/, const PeriodGrowth&, const std::string& /*parameter_name*/) const {
     return "";

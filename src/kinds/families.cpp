@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "base/levels.hpp"
@@ -14,6 +15,7 @@
 #include "files/orbit_trace.hpp"
 #include "kinds/orbit_check.hpp"
 #include "model/events.hpp"
+#include "orbit/collocation_rule.hpp"
 #include "orbit/ring_system.hpp"
 #include "settings/run_settings.hpp"
 #include "stability/bifurcation_tests.hpp"
@@ -122,6 +124,47 @@ std::string RingAnalysis::passed_zero(const Orbit& from, const Orbit& to) const 
 
 std::string RingAnalysis::passed_zero_segment(const Orbit& from, const Orbit& to) const {
   return tchat::passed_zero_segment(from, to);
+}
+
+namespace {
+
+/// Do an orbit's segments, or its one segment that no event ends, have parts that are alike?
+bool has_parts(const DefiningSystem& system, const Orbit& x, int parts) {
+  const int m = x.shape.segments;
+  if (m == 1) return !system.has_event(0);
+  if (m % parts != 0) return false;
+  const Signature& signature = system.signature();
+  for (int s = 0; s < m; ++s)
+    if (signature[static_cast<std::size_t>(s)] != signature[static_cast<std::size_t>((s + m / parts) % m)])
+      return false;
+  return true;
+}
+
+/// The largest difference of an orbit from itself a part of the period later, in ranges of each state.
+double distance_from_later(const Orbit& x, const CollocationRule& rule, int parts) {
+  const Eigen::VectorXd range = (x.states.rowwise().maxCoeff() - x.states.rowwise().minCoeff())
+                                    .cwiseMax(level::orbit * x.states.cwiseAbs().rowwise().maxCoeff())
+                                    .cwiseMax(std::numeric_limits<double>::min());
+  double largest = 0.0;
+  const auto compare = [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+    largest = std::max(largest, (a - b).cwiseQuotient(range).lpNorm<Eigen::Infinity>());
+  };
+  const int m = x.shape.segments, n = x.shape.dimension;
+  for (int s = 0; m > 1 && s < m; ++s)
+    compare(Eigen::Map<const Eigen::VectorXd>(x.end(s), n),
+            Eigen::Map<const Eigen::VectorXd>(x.end((s + m / parts) % m), n));
+  for (std::size_t j = 0; m == 1 && j < x.mesh.size() && x.mesh[j] + 1.0 / parts <= 1.0; ++j)
+    compare(state_at(x, rule, 0, x.mesh[j]), state_at(x, rule, 0, x.mesh[j] + 1.0 / parts));
+  return largest;
+}
+
+}  // namespace
+
+int RingAnalysis::like_parts(const Orbit& x) const {
+  const CollocationRule rule(x.shape.collocation);
+  for (const int parts : {2, 3})
+    if (has_parts(system_, x, parts) && distance_from_later(x, rule, parts) <= level::visible) return parts;
+  return 1;
 }
 
 std::string RingAnalysis::tendency(const Orbit& x, const PeriodGrowth& growth,

@@ -83,6 +83,7 @@ class RingAnalysis : public BranchAnalysis {
   std::string passed_infinity(const PathPoint& from, const PathPoint& to, double ds) const override;
   std::string passed_zero(const Orbit& from, const Orbit& to) const override;
   std::string passed_zero_segment(const Orbit& from, const Orbit& to) const override;
+  int like_parts(const Orbit& x) const override;
   /// A homoclinic or heteroclinic orbit.
   std::string tendency(const Orbit& x, const PeriodGrowth& growth, const std::string& parameter_name) const override;
   /// An orbit that takes no time, or on which no state moves, is none.

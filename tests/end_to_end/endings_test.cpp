@@ -80,6 +80,23 @@ TEST_CASE("with --strict a branch that ends by MX has exit status 3") {
   CHECK(workspace.tchat("run linosc -c impacting -d impacting -o branch NMX=5 --strict").status == 0);
 }
 
+TEST_CASE("a branch of doubled orbits ends where it leads on along those that it was born from") {
+  const Workspace workspace;
+  // Roessler's equations: period doublings at c = 2.832 and 3.837.
+  workspace.write("roessler.tch",
+                  "par c=3.9\nnumber a=0.2, b=0.2\ninit x=7.8884, y=-1.9457, z=1.9457\n"
+                  "x' = -y - z\ny' = x + a*y\nz' = b + z*(x - c)\n");
+  REQUIRE(workspace.tchat("simulate roessler --mode 1,1,2 --free c -o doubled --dat -q").status == 0);
+  const Outcome outcome =
+      workspace.tchat("run roessler -c doubled -d doubled -o doubled ICP=[c] RL0=3.5 DS=-0.018 DSMAX=0.18 NMX=60");
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  check_contains(outcome.out, {"are those of half of the period, run twice"});
+  const Rows rows = workspace.points("doubled").front().rows;
+  CHECK(rows.front().values.front() == Approx(3.9));
+  CHECK(rows.back().values.front() > 3.7);
+}
+
 TEST_CASE("a first step that fails") {
   const Workspace workspace;
   const Outcome outcome =

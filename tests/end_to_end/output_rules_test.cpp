@@ -242,6 +242,21 @@ TEST_CASE("with --clip the branch ends on the bound") {
   CHECK(rows.back().values[1] == Approx(1.5).epsilon(1e-7));
 }
 
+TEST_CASE("with --clip a branch that starts on a bound has no point beyond it") {
+  const Workspace workspace;
+  workspace.run(impacting + "RL1=3.1 --clip");
+  const Outcome outcome = workspace.tchat("run linosc -c impacting -s branch -o both IRS=EP2 RL1=3.1 --clip --both");
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  CHECK(outcome.text().find("alpha = 3.1, the bound RL1, where the branch starts") != std::string::npos);
+  std::size_t longest = 0;
+  for (const auto& section : workspace.points("both")) {
+    longest = std::max(longest, section.rows.size());
+    for (const auto& row : section.rows) CHECK(row.values.front() <= 3.1 * (1.0 + 1e-9));
+  }
+  CHECK(longest > 1);
+}
+
 TEST_CASE("a start outside of RL0, RL1 or A0, A1 is refused, and nothing is written") {
   const Workspace workspace;
   for (const std::string bounds : {"RL0=2 RL1=3", "A0=0 A1=1"}) {
