@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/levels.hpp"
 #include "base/words.hpp"
@@ -196,20 +197,21 @@ std::vector<MatrixXd> segments_of(const LabelledSolution& x) {
 ComparedOrbit compared_rest(const HybridSystem& system, int field, const VectorXd& x, const ParameterVector& par) {
   StateSizes sizes(x);
   sizes.add_at_rest(system, field, x.data(), par.data());
-  return {{IndexVector{}}, x, sizes.sizes(), {}, {}};
+  return {{IndexVector{}}, x, sizes.sizes(), {}, {}, NAN};
 }
 
 /// Differences of states that nothing depends on count for nothing.
 std::optional<ComparedOrbit> compared_orbit(const HybridSystem& system, const LabelledSolution& solution,
                                             const Signature& signature) {
   if (!is_comparable(solution)) return std::nullopt;
+  const std::vector<double> stored = in_layout(solution, system.layout()).parameters;
   ParameterVector par = initial_parameters(system);
-  for (Index k = 0; k < std::min<Index>(system.parameters(), std::ssize(solution.parameters)); ++k)
-    par(k) = solution.parameters[static_cast<std::size_t>(k)];
+  for (Index k = 0; k < std::min<Index>(system.parameters(), std::ssize(stored)); ++k)
+    par(k) = stored[static_cast<std::size_t>(k)];
   if (!family_of(solution.problem_type).facts().headings.has_period)
     return compared_rest(system, signature.empty() ? 1 : signature.front().field,
                          solution.states.col(0).head(solution.dimension), par);
-  ComparedOrbit orbit{signature, {}, {}, segments_of(solution), solution.tau};
+  ComparedOrbit orbit{signature, {}, {}, segments_of(solution), solution.tau, NAN};
   if (std::ssize(orbit.tau) != solution.states.cols() || std::ssize(orbit.segments) != std::ssize(signature))
     return std::nullopt;
   const Index m = std::ssize(orbit.segments);
@@ -224,6 +226,8 @@ std::optional<ComparedOrbit> compared_orbit(const HybridSystem& system, const La
     if (s == 0)
       for (const Index column : {Index(0), nodes.cols() / 2, nodes.cols() - 1}) points.emplace_back(nodes.col(column));
   }
+  if (const auto first = static_cast<Index>(system.layout().duration(0)) - 1; first + m <= std::ssize(stored))
+    orbit.period = std::accumulate(stored.begin() + first, stored.begin() + first + m, 0.0);
   StateSizes sizes(extremes);
   for (Index s = 0; s < m; ++s)
     sizes.add(system, FunctionKind::field, signature[static_cast<std::size_t>(s)].field, orbit.ends.col(s).data(),
@@ -249,6 +253,15 @@ bool is_regular(const LabelledSolution& solution) {
     return one.kind == UserPointKind::impact_velocity ||
            (one.kind == UserPointKind::other_type && is_bifurcation(static_cast<PointType>(one.index)));
   });
+}
+
+/// At a fold two orbits of one branch come together.
+bool is_at_fold(const LabelledSolution& solution) {
+  const std::vector<UserPointKind> kinds = all_kinds(solution);
+  return is_fold(static_cast<PointType>(basic_type(solution.type))) &&
+         std::none_of(kinds.begin(), kinds.end(), [](const UserPointKind& one) {
+           return one.kind == UserPointKind::impact_velocity || one.kind == UserPointKind::other_type;
+         });
 }
 
 Index nearest_labelled(const CataloguedSection& section, Index point) {
@@ -281,10 +294,11 @@ struct BranchRecognition::KnownStart {
 std::optional<BranchRecognition::OwnOrbit> BranchRecognition::last_regular_orbit(
     const CataloguedSection& section) const {
   const SolutionFile file = read_solution_file(commands_.file('q', section.branch));
-  for (Index row = std::ssize(section.labels) - 1; row >= 0; --row)
-    for (const LabelledSolution& solution : file.solutions)
-      if (solution.label == section.labels[static_cast<std::size_t>(row)] && is_regular(solution))
-        return OwnOrbit{&section, row, solution};
+  for (bool (*const is_wanted)(const LabelledSolution&) : {&is_regular, &is_at_fold})
+    for (Index row = std::ssize(section.labels) - 1; row >= 0; --row)
+      for (const LabelledSolution& solution : file.solutions)
+        if (solution.label == section.labels[static_cast<std::size_t>(row)] && is_wanted(solution))
+          return OwnOrbit{&section, row, solution};
   return std::nullopt;
 }
 

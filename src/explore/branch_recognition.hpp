@@ -69,10 +69,10 @@ Signature signature_of(const SweepAttractor& attractor);
 // Of which known branch the orbits of a run are a part.
 //
 // Numbers of the catalogue tell which branches are near. Among those the last labelled orbit of the run that is no
-// bifurcation, and no impact of velocity zero, decides: the known branch's orbit at exactly the same parameter value,
-// which it has as a label or which a further run from its nearest label corrects, is the same one or not
-// (motion/orbit_identity.hpp). Where there is no such orbit, as when the known branch ends before, the numbers decide
-// alone.
+// bifurcation, and no impact of velocity zero, or else the last one at a fold, decides: the known branch's orbit at
+// exactly the same parameter value, which it has as a label or which a further run from its nearest label corrects, is
+// the same one or not (motion/orbit_identity.hpp). Where there is no such orbit, as when the known branch ends before,
+// the numbers decide alone.
 
 /// Of which branch a section is a part.
 struct KnownBranch {

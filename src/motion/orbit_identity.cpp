@@ -16,8 +16,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double unlike = std::numeric_limits<double>::infinity();
-constexpr Index points_compared = 12, least_points = 4;
-constexpr Index nodes_beside = 2;  // on each side of the nearest one
+constexpr Index points_compared = 400, least_points = 4;  // two orbits may differ in one passage of many
+constexpr Index nodes_beside = 2;                         // on each side of the nearest one
 constexpr int halvings = 40;
 
 bool repeats_after(const Signature& word, std::size_t length) {
@@ -69,17 +69,16 @@ VectorXd state_at(const Piece& piece, Index first, Index last, double tau) {
   return state;
 }
 
-double distance_from_piece(const VectorXd& state, const Piece& piece, const VectorXd& weight) {
+/// From the piece beside one of its nodes.
+double distance_beside(const VectorXd& state, const Piece& piece, Index node, const VectorXd& weight) {
   const Index nodes = piece.nodes.cols();
-  Index nearest = 0;
-  const auto size = [&](const VectorXd& other) { return (state - other).cwiseProduct(weight).squaredNorm(); };
-  for (Index k = 1; k < nodes; ++k)
-    if (size(piece.nodes.col(k)) < size(piece.nodes.col(nearest))) nearest = k;
-  const Index first = std::max<Index>(0, nearest - nodes_beside);
-  const Index last = std::min<Index>(nodes - 1, nearest + nodes_beside);
-  const auto value = [&](double tau) { return size(state_at(piece, first, last, tau)); };
-  double low = piece.tau[static_cast<std::size_t>(std::max<Index>(0, nearest - 1))];
-  double high = piece.tau[static_cast<std::size_t>(std::min<Index>(nodes - 1, nearest + 1))];
+  const Index first = std::max<Index>(0, node - nodes_beside);
+  const Index last = std::min<Index>(nodes - 1, node + nodes_beside);
+  const auto value = [&](double tau) {
+    return (state - state_at(piece, first, last, tau)).cwiseProduct(weight).squaredNorm();
+  };
+  double low = piece.tau[static_cast<std::size_t>(std::max<Index>(0, node - 1))];
+  double high = piece.tau[static_cast<std::size_t>(std::min<Index>(nodes - 1, node + 1))];
   for (int k = 0; k < halvings; ++k) {
     const double a = low + (high - low) / 3.0, b = high - (high - low) / 3.0;
     (value(a) < value(b) ? high : low) = value(a) < value(b) ? b : a;
@@ -87,19 +86,39 @@ double distance_from_piece(const VectorXd& state, const Piece& piece, const Vect
   return distance(state, state_at(piece, first, last, 0.5 * (low + high)), weight);
 }
 
+/// Where an orbit passes several times, its nodes may be nearer on another passage: each passage is looked at.
+double distance_from_piece(const VectorXd& state, const Piece& piece, const VectorXd& weight) {
+  const Index nodes = piece.nodes.cols();
+  const MatrixXd scaled = weight.asDiagonal() * (piece.nodes.colwise() - state);
+  const VectorXd away = scaled.colwise().norm();
+  const auto reach = [&](Index k) {
+    return std::max(k > 0 ? (scaled.col(k) - scaled.col(k - 1)).norm() : 0.0,
+                    k + 1 < nodes ? (scaled.col(k + 1) - scaled.col(k)).norm() : 0.0);
+  };
+  double least = unlike;
+  for (Index k = 0; k < nodes; ++k) {
+    const bool falls = k == 0 || away(k) <= away(k - 1), rises = k + 1 == nodes || away(k) <= away(k + 1);
+    if (falls && rises && away(k) - reach(k) <= least)
+      least = std::min(least, distance_beside(state, piece, k, weight));
+  }
+  return least;
+}
+
 /// The largest distance of points of the one, which has been reflected, from the other.
 double distance_beyond(const std::vector<Piece>& one, const VectorXd& signs, const std::vector<Piece>& other,
                        const VectorXd& weight) {
   if (one.empty() || other.empty()) return unlike;
-  const Index points = std::max<Index>(least_points, points_compared / std::ssize(one));
+  const Index wanted = std::max<Index>(least_points, points_compared / std::ssize(one));
   double largest = 0.0;
-  for (const Piece& piece : one)
+  for (const Piece& piece : one) {
+    const Index points = std::min<Index>(wanted, piece.nodes.cols() - 1);
     for (Index k = 0; k < points && largest < unlike; ++k) {
       const VectorXd state = signs.cwiseProduct(piece.nodes.col(k * (piece.nodes.cols() - 1) / points));
       double least = unlike;
       for (const Piece& target : other) least = std::min(least, distance_from_piece(state, target, weight));
       largest = std::max(largest, least);
     }
+  }
   return largest;
 }
 
@@ -108,6 +127,13 @@ double distance_of_curves(const ComparedOrbit& a, const VectorXd& signs, const C
   const VectorXd weight = weights(a, b);
   const std::vector<Piece> of_a = pieces_of(a), of_b = pieces_of(b);
   return std::max(distance_beyond(of_a, signs, of_b, weight), distance_beyond(of_b, signs, of_a, weight));
+}
+
+/// May they be periods of one orbit, run round more or less often?
+bool are_multiples(double a, double b) {
+  if (!(a > 0.0) || !(b > 0.0)) return true;
+  const double ratio = std::max(a, b) / std::min(a, b);
+  return std::abs(ratio - std::round(ratio)) <= level::same * ratio;
 }
 
 struct Extremes {
@@ -161,6 +187,7 @@ double orbit_distance(const ComparedOrbit& a, const ComparedOrbit& b) {
   const bool are_cut_alike = primitive_word(a.signature).word == primitive_word(b.signature).word;
   if (are_cut_alike && !is_smooth(a.signature) && !has_instants(a) && !has_instants(b))
     return compare_cuts(a, b).distance;
+  if (!are_multiples(a.period, b.period)) return unlike;
   return distance_of_curves(a, VectorXd::Ones(a.sizes.size()), b);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -11,7 +12,9 @@ namespace tchat {
 
 // Orbits cut by the same events are compared by their states at these: the same when these agree for some rotation of
 // the signature, compared until both orbits are back at their start. Of others, and of smooth orbits, points of each
-// are compared with the nearest ones on the curve of the other: those do not depend on where an orbit is cut.
+// are compared with the nearest ones on the curve of the other: those do not depend on where an orbit is cut. Two long
+// orbits may pass the same places in another order, or more often: periods that are no multiples of each other, to
+// 1e-5, are those of two orbits.
 //
 // Distances are in units of the sizes of both orbits, the larger of the two (sizes_of_differences()). How small one has
 // to be is up to how well the orbits are known.
@@ -22,6 +25,7 @@ struct ComparedOrbit {
   Eigen::VectorXd sizes;                  ///< of differences, n; infinite: left out
   std::vector<Eigen::MatrixXd> segments;  ///< nodes of each, n x (number of them); empty: not known
   std::vector<double> tau;                ///< of the nodes of every segment
+  double period = NAN;                    ///< with repetitions; NaN: not known
 };
 
 /// The part that a signature repeats, beginning where that is least in the order of index vectors, and how often.

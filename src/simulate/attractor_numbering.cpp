@@ -31,7 +31,7 @@ constexpr std::size_t most_compared = 1000;
 bool repeats(const AttractorSample& sample) { return repeats(sample.kind); }
 
 ComparedOrbit cuts_of(const AttractorSample& sample) {
-  return {sample.signature, sample.identity, sample.sizes, {}, {}};
+  return {sample.signature, sample.identity, sample.sizes, {}, {}, sample.period};
 }
 
 VectorXd sizes_of(const AttractorSample& a, const AttractorSample& b) {

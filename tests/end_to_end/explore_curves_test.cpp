@@ -263,7 +263,7 @@ TEST_CASE("predators and prey: Hopf, boundary and grazing curve end or cross whe
   for (const char* const kind : {"HB", "BE", "GR"}) CHECK(count_of(tree, kind) == 1);
   const std::string hopf = curve_from(tree, "HB", {" of b1", " of b2"}),
                     boundary = curve_from(tree, "BE", {" of b1", " of b2"});
-  const std::string grazing = curve_from(tree, "GR", {" of b1", " of b2", " of b3", " of b4", " of b5"});
+  const std::string grazing = curve_from(tree, "GR", {" of b1", " of b2", " of b3", " of b4", " of b5", " of b6"});
   // The prey's isocline has its maximum at the Hopf bifurcation.
   for (const Place& point : inner_points(workspace.file("food/p." + hopf), "d"))
     CHECK(point.first == Approx((1.0 + point.second) / (1.0 - point.second)).epsilon(1e-8));

@@ -55,7 +55,43 @@ struct DrillString {
   }
 };
 
+/// The membrane of Morris and Lecar at rest at the potential v, where its current is I(v).
+struct Membrane {
+  static double rise(double v, double half, double width) { return 0.5 * (1.0 + std::tanh((v - half) / width)); }
+  static double slope(double v, double half, double width) {
+    return 0.5 / width / std::pow(std::cosh((v - half) / width), 2);
+  }
+  static double current(double v) {
+    return 2.0 * (v + 60.0) + 4.4 * rise(v, -1.2, 18.0) * (v - 120.0) + 8.0 * rise(v, 2.0, 30.0) * (v + 84.0);
+  }
+  /// Zero at a Hopf bifurcation.
+  static double trace(double v) {
+    const double calcium = slope(v, -1.2, 18.0) * (v - 120.0) + rise(v, -1.2, 18.0);
+    return -(2.0 + 4.4 * calcium + 8.0 * rise(v, 2.0, 30.0)) / 20.0 - 0.04 * std::cosh((v - 2.0) / 60.0);
+  }
+  static double hopf_current(double low, double high) {
+    std::uintmax_t iterations = 100;
+    const auto root =
+        boost::math::tools::toms748_solve(&trace, low, high, boost::math::tools::eps_tolerance<double>(50), iterations);
+    return current(0.5 * (root.first + root.second));
+  }
+};
+
 }  // namespace
+
+TEST_CASE("the cycles between two Hopf bifurcations are one branch, from either end and from an attractor") {
+  const Workspace workspace;
+  REQUIRE(workspace.shell("cp " + std::string(SYSTEMS) + "/morris_lecar.tch .").status == 0);
+  const Outcome outcome = workspace.tchat("explore morris_lecar --over I=60:250:39 -o diagram -j 2 -q");
+  INFO(outcome.text());
+  REQUIRE(outcome.status == 0);
+  const std::string tree = workspace.read("diagram.txt");
+  check_label(tree, "HB", Membrane::hopf_current(-40.0, -10.0));  // 93.86 in the book
+  check_label(tree, "HB", Membrane::hopf_current(0.0, 20.0));     // 212.0
+  CHECK(nearest(tree, "LP", 88.29) == Approx(88.29).margin(0.01));
+  // Equilibria begin on either bound of the range, where one direction has no orbit: no branch of their own.
+  CHECK(tree.find("\n2 branches. ") != std::string::npos);
+}
 
 TEST_CASE("predators and prey, a problem without jumps: equilibria, branch point, Hopf bifurcation, cycles") {
   const Workspace workspace;

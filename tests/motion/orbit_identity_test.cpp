@@ -14,12 +14,12 @@ namespace {
 
 /// The sizes of its differences are those of its states.
 ComparedOrbit cut_orbit(const Signature& signature, const MatrixXd& ends) {
-  return {signature, ends, ends.cwiseAbs().rowwise().maxCoeff(), {}, {}};
+  return {signature, ends, ends.cwiseAbs().rowwise().maxCoeff(), {}, {}, NAN};
 }
 
 /// Extremes of the nodes give the sizes; the last node of each segment is its end.
 ComparedOrbit curve(const Signature& signature, const std::vector<MatrixXd>& segments) {
-  ComparedOrbit orbit{signature, {}, {}, segments, {}};
+  ComparedOrbit orbit{signature, {}, {}, segments, {}, NAN};
   const auto nodes = static_cast<int>(segments.front().cols());
   for (int k = 0; k < nodes; ++k) orbit.tau.push_back(k / (nodes - 1.0));
   orbit.ends.resize(segments.front().rows(), std::ssize(segments));
@@ -121,6 +121,31 @@ TEST_CASE("a smooth orbit is the same curve wherever it begins") {
   CHECK(orbit_distance(orbit, other(2.0, 0.01, 0.0)) < 1e-5);
   CHECK(orbit_distance(orbit, other(2.001, 1.234, 0.0)) > 1e-4);
   CHECK(orbit_distance(orbit, other(2.0, 1.234, 5e-4)) > 1e-4);
+}
+
+TEST_CASE("an orbit that passes close to itself is the same curve, whichever passage has the nearest node") {
+  // Eight turns of a spiral there and back, 0.002 apart, with nodes 0.08 apart.
+  const auto spiral = [](double shift) {
+    MatrixXd states(2, 641);
+    for (int k = 0; k <= 640; ++k) {
+      const double t = std::fmod(k / 640.0 + shift, 1.0), angle = 16.0 * std::acos(-1.0) * t;
+      const double radius = 1.0 + 0.008 * std::cos(2.0 * std::acos(-1.0) * t);
+      states.col(k) = Eigen::Vector2d(radius * std::cos(angle), radius * std::sin(angle));
+    }
+    return states;
+  };
+  CHECK(orbit_distance(curve(smooth, {spiral(0.0)}), curve(smooth, {spiral(0.0123)})) < 1e-5);
+}
+
+TEST_CASE("orbits that pass the same places are two where their periods are no multiples of each other") {
+  ComparedOrbit once = curve(smooth, {ellipse(2.0, 1.0, 0.0)}), other = once;
+  once.period = 3.0;
+  for (const double period : {3.0, 6.0, 6.0 * (1.0 + 1e-6), 1.5}) {
+    other.period = period;
+    CHECK(orbit_distance(once, other) < 1e-5);
+  }
+  other.period = 6.0 * (1.0 + 2e-5);
+  CHECK(orbit_distance(once, other) == INFINITY);
 }
 
 TEST_CASE("orbits that are not cut alike and not known between their cuts cannot be compared") {
