@@ -366,7 +366,8 @@ std::optional<MirroredBranch> BranchRecognition::mirror_in(const CataloguedSecti
                                                            const std::vector<LabelledSolution>& solutions) const {
   for (const LabelledSolution& solution : solutions) {
     const auto own = std::find(section.labels.begin(), section.labels.end(), solution.label);
-    if (own == section.labels.end()) continue;
+    // Where branches meet, orbits say nothing of the others.
+    if (own == section.labels.end() || !is_regular(solution)) continue;
     const Index row = own - section.labels.begin();
     for (Index at = 0; at < std::ssize(known.labels); ++at) {
       const int label = known.labels[static_cast<std::size_t>(at)];

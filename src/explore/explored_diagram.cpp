@@ -119,9 +119,9 @@ std::string branch_json(const ExploredBranch& branch) {
                        json(label.remark), json(label.curve));
   });
   return fmt::format(
-      R"({{"name": {}, "parent": {}, "origin": {}, "mirror_of": {}, "from": {}, "to": {}, "signatures": {}, "ends": {}, "may_be_missing": {}, "labels": {}, "commands": {}}})",
+      R"({{"name": {}, "parent": {}, "origin": {}, "mirror_of": {}, "from": {}, "to": {}, "points": {}, "inadmissible": {}, "signatures": {}, "ends": {}, "may_be_missing": {}, "labels": {}, "commands": {}}})",
       json(branch.name), json(branch.parent), json(branch.origin), json(branch.mirror_of), json(branch.from),
-      json(branch.to), json_list(branch.signatures),
+      json(branch.to), json(branch.points), json(branch.inadmissible), json_list(branch.signatures),
       json_list(branch.ends,
                 [](const RecordedEnd& end) {
                   return fmt::format(R"({{"reason": {}, "text": {}}})", json(end.reason), json(end.text));
@@ -137,6 +137,8 @@ std::string tree_text(const ExploredDiagram& diagram) {
       const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
       text += fmt::format("{}{}  {:.6g} to {:.6g}, {}\n", indent, branch.name, branch.from, branch.to, branch.origin);
       for (const ExploredLabel& label : branch.labels) text += fmt::format("{}    {}\n", indent, label_text(label));
+      if (branch.inadmissible > 0)
+        text += fmt::format("{}    {} of {} points are inadmissible\n", indent, branch.inadmissible, branch.points);
       text += losses_text(branch.lost, indent, diagram.parameter);
       for (const RecordedEnd& end : branch.ends) text += fmt::format("{}    ends: {}\n", indent, end.text);
       add(branch.name, depth + 1);

@@ -47,6 +47,7 @@ struct ExploredBranch {
   int doublings = 0;
   bool has_returns = false;     ///< one impact in several returns to grazing, or from such a branch
   double from = 0.0, to = 0.0;  ///< range of the parameter
+  int points = 0, inadmissible = 0;
   std::vector<std::string> signatures;
   std::vector<RecordedEnd> ends;   ///< why each direction ended
   std::vector<RecordedLoss> lost;  ///< special points that may be missing

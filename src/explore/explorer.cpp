@@ -265,6 +265,12 @@ class Explorer {
     return known;
   }
 
+  /// Has each direction ended where it began?
+  static bool has_single_points(const PointFile& points) {
+    return std::all_of(points.sections.begin(), points.sections.end(),
+                       [](const PointSection& section) { return section.rows.size() < 2; });
+  }
+
   static bool is_new(const CataloguedSection& section, const KnownBranch& known) {
     return known.name.empty() && section.parameter.size() > 1;
   }
@@ -359,6 +365,10 @@ class Explorer {
     const PointFile points = read_point_file(commands_.file('p', branch.name));
     if (candidate.points < most_points && !commands_.limits_points() && is_cut_off(record, points))
       return take_longer(candidate, next);
+    if (candidate.parent < diagram_.branches.size() && has_single_points(points)) {
+      set_outcome(candidate, "", "no orbit of the range begins there");
+      return false;
+    }
     std::vector<CataloguedSection> sections = catalogued_sections(branch.name, points, commands_.monitors());
     const std::optional<std::vector<KnownBranch>> found =
         known_branches(sections, is_switch_in_both_directions(candidate));
@@ -382,6 +392,8 @@ class Explorer {
     describe_points(points, commands_.range(), branch);
     branch.ends = record.ends;
     branch.lost = record.lost;
+    branch.points = record.points;
+    branch.inadmissible = record.inadmissible;
     set_outcome(candidate, branch.name, "");
     diagram_.branches.push_back(branch);
     show(fmt::format("{}: {}, {} = {:.6g} to {:.6g}\n", branch.name, branch.origin, diagram_.parameter, branch.from,

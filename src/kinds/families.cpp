@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "base/levels.hpp"
@@ -131,7 +130,7 @@ namespace {
 /// Do an orbit's segments, or its one segment that no event ends, have parts that are alike?
 bool has_parts(const DefiningSystem& system, const Orbit& x, int parts) {
   const int m = x.shape.segments;
-  if (m == 1) return !system.has_event(0);
+  if (m == 1) return !system.has_event(0) && !x.shape.own;
   if (m % parts != 0) return false;
   const Signature& signature = system.signature();
   for (int s = 0; s < m; ++s)
@@ -140,30 +139,48 @@ bool has_parts(const DefiningSystem& system, const Orbit& x, int parts) {
   return true;
 }
 
-/// The largest difference of an orbit from itself a part of the period later, in ranges of each state.
-double distance_from_later(const Orbit& x, const CollocationRule& rule, int parts) {
-  const Eigen::VectorXd range = (x.states.rowwise().maxCoeff() - x.states.rowwise().minCoeff())
-                                    .cwiseMax(level::orbit * x.states.cwiseAbs().rowwise().maxCoeff())
-                                    .cwiseMax(std::numeric_limits<double>::min());
-  double largest = 0.0;
-  const auto compare = [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-    largest = std::max(largest, (a - b).cwiseQuotient(range).lpNorm<Eigen::Infinity>());
-  };
-  const int m = x.shape.segments, n = x.shape.dimension;
+/// State i at tau on the one segment of an orbit without events.
+double state_at(const Orbit& x, int i, double tau) {
+  const auto next = std::upper_bound(x.mesh.begin() + 1, x.mesh.end() - 1, tau);
+  const auto interval = static_cast<int>(next - x.mesh.begin()) - 1;
+  const int points = x.shape.collocation, first = interval * points;
+  const double begin = x.mesh[static_cast<std::size_t>(interval)];
+  const double at = points * (tau - begin) / (*next - begin);  // nodes are at 0, 1, ..., points
+  double state = 0.0;
+  for (int k = 0; k <= points; ++k) {
+    double weight = 1.0;
+    for (int l = 0; l <= points; ++l)
+      if (l != k) weight *= (at - l) / (k - l);
+    state += weight * x.node(0, first + k)[i];
+  }
+  return state;
+}
+
+/// Is state i of an orbit what it is a part of the period later, to 1e-4 of its range?
+bool is_alike_later(const Orbit& x, int i, int parts) {
+  constexpr double same = level::visible;
+  const auto states = x.states.row(i);
+  const double low = states.minCoeff(), high = states.maxCoeff();
+  const double most = same * std::max(high - low, level::orbit * std::max(std::abs(low), std::abs(high)));
+  const int m = x.shape.segments;
   for (int s = 0; m > 1 && s < m; ++s)
-    compare(Eigen::Map<const Eigen::VectorXd>(x.end(s), n),
-            Eigen::Map<const Eigen::VectorXd>(x.end((s + m / parts) % m), n));
+    if (std::abs(x.end(s)[i] - x.end((s + m / parts) % m)[i]) > most) return false;
   for (std::size_t j = 0; m == 1 && j < x.mesh.size() && x.mesh[j] + 1.0 / parts <= 1.0; ++j)
-    compare(state_at(x, rule, 0, x.mesh[j]), state_at(x, rule, 0, x.mesh[j] + 1.0 / parts));
-  return largest;
+    if (std::abs(state_at(x, i, x.mesh[j]) - state_at(x, i, x.mesh[j] + 1.0 / parts)) > most) return false;
+  return true;
+}
+
+bool is_alike_later(const Orbit& x, int parts) {
+  for (int i = 0; i < x.shape.dimension; ++i)
+    if (!is_alike_later(x, i, parts)) return false;
+  return true;
 }
 
 }  // namespace
 
 int RingAnalysis::like_parts(const Orbit& x) const {
-  const CollocationRule rule(x.shape.collocation);
   for (const int parts : {2, 3})
-    if (has_parts(system_, x, parts) && distance_from_later(x, rule, parts) <= level::visible) return parts;
+    if (has_parts(system_, x, parts) && is_alike_later(x, parts)) return parts;
   return 1;
 }
 

@@ -150,8 +150,8 @@ bool AttractorSearch::try_rest(const HybridSimulation& motion) {
   for (std::size_t back = 1; back <= passed_.size() && (2 * back <= passed_.size() || states.size() < least); ++back)
     if (const Passed& at = passed_[passed_.size() - back]; is_alike(at)) states.push_back(at.end);
   std::reverse(states.begin(), states.end());
-  equilibrium_ =
-      approached_equilibrium(motion.system(), index, states, least, motion.parameters(), ignorable_, motion.sizes());
+  equilibrium_ = approached_equilibrium(motion.system(), index, states, least, motion.parameters(), ignorable_,
+                                        motion.sizes(), settings_.flow.relative_tolerance);
   return equilibrium_.has_value();
 }
 

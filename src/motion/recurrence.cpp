@@ -285,7 +285,6 @@ using Eigen::Index;
 constexpr double rounding = level::orbit;  // of real parts, relative to |f_x|
 constexpr std::size_t least_states = 4;
 constexpr double no_movement = 1e-3;           // relative to the sizes of the states
-constexpr double there = level::differences;   // distance that integration cannot tell from zero, likewise
 constexpr double at_surface = level::located;  // the same from the surface of an event
 constexpr double least_fall = 1e-3;            // of distances, relative to the last one
 
@@ -359,8 +358,9 @@ std::optional<VectorXd> reached_equilibrium(const HybridSystem& system, const Si
 std::optional<VectorXd> approached_equilibrium(const HybridSystem& system, const IndexVector& index,
                                                const std::vector<VectorXd>& states, std::size_t least,
                                                const VectorXd& par, const std::vector<Index>& ignorable,
-                                               const VectorXd& sizes) {
+                                               const VectorXd& sizes, double tolerance) {
   if (states.size() < least_states) return std::nullopt;
+  const double there = std::max(level::differences, 100.0 * tolerance);  // integration cannot tell it from zero
   const std::optional<Rest> found = attracting_equilibrium(system, index.field, states.back(), par, ignorable, sizes);
   if (!found) return std::nullopt;
   const VectorXd& rest = found->state;

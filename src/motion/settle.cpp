@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/levels.hpp"
+
 namespace tchat {
 
 namespace {
@@ -10,8 +12,10 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-// In sizes. A motion may begin 1e-12 beside an unstable equilibrium, or with rounding alone, and settle yet.
+// In sizes. A motion may begin 1e-12 beside an unstable equilibrium and settle yet, or at 1e-300: sizes as small as
+// rounding of 1 say nothing.
 constexpr double far_away = 1e18;
+constexpr double least_size = level::negligible;
 constexpr double far_at_failure = 1e6;  // where the integration fails there
 constexpr double far_at_end = 1e3;      // where it has no event any more, and goes on outwards
 constexpr long of_start = 16;           // events in which a motion shows its sizes
@@ -81,7 +85,10 @@ MotionEnd MotionJudge::look(const HybridSimulation& simulation, const SimulatedS
     equilibrium_ = search_.equilibrium();
     return MotionEnd::settled;
   }
-  return is_beyond(extremes(segment), far_away) ? MotionEnd::escapes : MotionEnd::open;
+  VectorXd here = extremes(segment);
+  for (const Index k : search_.ignorable()) here(k) = 0.0;
+  const bool is_far = is_beyond(here, far_away) && !(here.maxCoeff() <= far_away * least_size);
+  return is_far ? MotionEnd::escapes : MotionEnd::open;
 }
 
 namespace {

@@ -75,8 +75,8 @@ double cloud_distance(const AttractorSample& a, const AttractorSample& b) {
 }
 
 double rest_distance(const AttractorSample& a, const AttractorSample& b) {
-  if (a.last.x.size() == 0 || b.last.x.size() == 0) return infinite_distance;
-  return largest_in(sizes_of(a, b), a.last.x - b.last.x);
+  if (a.identity.cols() != 1 || b.identity.cols() != 1) return infinite_distance;
+  return largest_in(sizes_of(a, b), a.identity - b.identity);
 }
 
 std::string mode_text(const std::vector<IndexVector>& watched) {

@@ -50,7 +50,7 @@ struct AttractorSample {
   /// too. Empty: not asked for, or no attractor.
   Eigen::MatrixXd largest;
   /// Section states by which equal attractors are known; periodic: one period, of every event in the order of
-  /// `signature`. n x (number of them)
+  /// `signature`; at rest the equilibrium. n x (number of them)
   Eigen::MatrixXd identity;
   Eigen::VectorXd sizes;  ///< of differences of each state over the attractor, at rest the sizes of the states; n
   MotionState last;       ///< to go on from at a neighbouring value; x is empty where there is nothing to go on from

@@ -397,6 +397,7 @@ class SampleRun {
       if (segment.ended_by == SegmentEnd::event && ends.size() < identity_points)
         ends.push_back({segment.end_time(), segment.index.event, segment.after});
     sample_.identity = columns_of(ends, n);
+    if (sample_.kind == AttractorKind::rest) sample_.identity = rest_ ? *rest_ : kept_.back().end;
     // Attractors are not told apart by states that nothing depends on.
     for (const Eigen::Index k : search_.ignorable()) sample_.identity.row(k).setZero();
     std::vector<Dot> dots, contacts;

@@ -51,6 +51,26 @@ std::vector<double> impact_velocities(double alpha, double omega, double zeta, d
 
 }  // namespace
 
+TEST_CASE("sweep: a motion that hovers over a focus, as far as integration resolves it, rests there") {
+  const Workspace workspace;
+  workspace.write(
+      "fhn.tch",
+      "par I=0, a=0.7, b=0.8, eps=0.08\ninit v=-1, w=-0.5\nv' = v - v^3/3 - w + I\nw' = eps*(v + a - b*w)\n");
+  // Foci from I = 0.1 on, stable up to the Hopf bifurcation at 0.3313.
+  const tchat::SweepTable table = sweep(workspace, "fhn --over I=0.2:0.32:25", "focus");
+  for (const tchat::AttractorKind kind : table.kinds) CHECK(kind == tchat::AttractorKind::rest);
+  CHECK(table.attractors.size() == 1);
+}
+
+TEST_CASE("sweep: a motion that begins at rounding settles, however far it has grown") {
+  const Workspace workspace;
+  workspace.write("bautin.tch",
+                  "par mu=0.1, om=3\ninit x=1, y=0\nR = x^2 + y^2\nx' = x*(mu + R - R^2) - om*y\n"
+                  "y' = y*(mu + R - R^2) + om*x\n");
+  const tchat::SweepTable table = sweep(workspace, "bautin --over mu=0.1:0.5:3 --state 1e-30,0", "cycle");
+  for (const tchat::AttractorKind kind : table.kinds) CHECK(kind == tchat::AttractorKind::periodic);
+}
+
 TEST_CASE("sweep: hysteresis of the impact oscillator, velocities and folds in closed form") {
   const Workspace workspace(Workspace::Plugin::source);
   const double omega = 1.8901, zeta = 0.05, r = 0.8;

@@ -229,12 +229,13 @@ TEST_CASE("an equilibrium that attracts, and motions that do not come to one") {
   };
   const std::vector<double> falling{1.0, 0.5, 0.2, 0.1};
   const ParameterVector sink = parameters({-1.0, -2.0, -1.0});
-  REQUIRE(
-      approached_equilibrium(system, index, at_distances(falling), 4, sink, {}, Eigen::Vector3d::Ones()).has_value());
-  CHECK(approached_equilibrium(system, index, at_distances(falling), 4, sink, {}, Eigen::Vector3d::Ones())->norm() <
-        1e-12);
+  REQUIRE(approached_equilibrium(system, index, at_distances(falling), 4, sink, {}, Eigen::Vector3d::Ones(), 1e-12)
+              .has_value());
+  CHECK(approached_equilibrium(system, index, at_distances(falling), 4, sink, {}, Eigen::Vector3d::Ones(), 1e-12)
+            ->norm() < 1e-12);
   const auto refused = [&](const HybridSystem& by, const std::vector<double>& distances, const ParameterVector& par) {
-    return !approached_equilibrium(by, index, at_distances(distances), 4, par, {}, Eigen::Vector3d::Ones()).has_value();
+    return !approached_equilibrium(by, index, at_distances(distances), 4, par, {}, Eigen::Vector3d::Ones(), 1e-12)
+                .has_value();
   };
   CHECK(refused(system, falling, parameters({1.0, -2.0, -1.0})));
   CHECK(refused(system, {0.1, 0.2, 0.5, 1.0}, sink));
