@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/levels.hpp"
-
 namespace tchat {
 
 namespace {
@@ -12,10 +10,11 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-// In sizes. A motion may begin 1e-12 beside an unstable equilibrium and settle yet, or at 1e-300: sizes as small as
-// rounding of 1 say nothing.
-constexpr double far_away = 1e18;
-constexpr double least_size = level::negligible;
+// A motion may begin beside an unstable equilibrium, at 1e-30 or 1e-300, and settle yet: what it began with says
+// nothing. Beyond this, powers of a state have no room in double precision, whatever its unit.
+constexpr double no_room = 1e100;
+// In sizes.
+constexpr double far_away = 1e18;       // where no event comes any more, after events that have shown sizes
 constexpr double far_at_failure = 1e6;  // where the integration fails there
 constexpr double far_at_end = 1e3;      // where it has no event any more, and goes on outwards
 constexpr long of_start = 16;           // events in which a motion shows its sizes
@@ -65,7 +64,8 @@ MotionEnd MotionJudge::end_of(const HybridSimulation& simulation, const Simulate
   equilibrium_ = reached_equilibrium(simulation.system(), segment, simulation.parameters(), search_.ignorable(),
                                      simulation.sizes());
   if (equilibrium_) return MotionEnd::settled;
-  return is_leaving(simulation, segment) ? MotionEnd::escapes : MotionEnd::no_event;
+  const bool is_far = events_ >= of_start && is_beyond(extremes(segment), far_away);
+  return is_far || is_leaving(simulation, segment) ? MotionEnd::escapes : MotionEnd::no_event;
 }
 
 MotionEnd MotionJudge::look(const HybridSimulation& simulation, const SimulatedSegment& segment, bool is_transient) {
@@ -87,8 +87,7 @@ MotionEnd MotionJudge::look(const HybridSimulation& simulation, const SimulatedS
   }
   VectorXd here = extremes(segment);
   for (const Index k : search_.ignorable()) here(k) = 0.0;
-  const bool is_far = is_beyond(here, far_away) && !(here.maxCoeff() <= far_away * least_size);
-  return is_far ? MotionEnd::escapes : MotionEnd::open;
+  return here.maxCoeff() <= no_room ? MotionEnd::open : MotionEnd::escapes;
 }
 
 namespace {
