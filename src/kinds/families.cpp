@@ -130,7 +130,7 @@ namespace {
 /// Do an orbit's segments, or its one segment that no event ends, have parts that are alike?
 bool has_parts(const DefiningSystem& system, const Orbit& x, int parts) {
   const int m = x.shape.segments;
-  if (m == 1) return !system.has_event(0) && !x.shape.own;
+  if (m == 1) return !system.has_event(0);
   if (m % parts != 0) return false;
   const Signature& signature = system.signature();
   for (int s = 0; s < m; ++s)
@@ -139,40 +139,27 @@ bool has_parts(const DefiningSystem& system, const Orbit& x, int parts) {
   return true;
 }
 
-/// State i at tau on the one segment of an orbit without events.
-double state_at(const Orbit& x, int i, double tau) {
-  const auto next = std::upper_bound(x.mesh.begin() + 1, x.mesh.end() - 1, tau);
-  const auto interval = static_cast<int>(next - x.mesh.begin()) - 1;
-  const int points = x.shape.collocation, first = interval * points;
-  const double begin = x.mesh[static_cast<std::size_t>(interval)];
-  const double at = points * (tau - begin) / (*next - begin);  // nodes are at 0, 1, ..., points
-  double state = 0.0;
-  for (int k = 0; k <= points; ++k) {
-    double weight = 1.0;
-    for (int l = 0; l <= points; ++l)
-      if (l != k) weight *= (at - l) / (k - l);
-    state += weight * x.node(0, first + k)[i];
-  }
-  return state;
-}
-
-/// Is state i of an orbit what it is a part of the period later, to 1e-4 of its range?
-bool is_alike_later(const Orbit& x, int i, int parts) {
+/// Is an orbit what it is a part of the period later, each state to 1e-4 of its range?
+bool is_alike_later(const Orbit& x, const CollocationRule& rule, int parts) {
   constexpr double same = level::visible;
-  const auto states = x.states.row(i);
-  const double low = states.minCoeff(), high = states.maxCoeff();
-  const double most = same * std::max(high - low, level::orbit * std::max(std::abs(low), std::abs(high)));
-  const int m = x.shape.segments;
+  const int m = x.shape.segments, n = x.shape.dimension;
+  StackVector most(n), now(n), later(n);
+  for (int i = 0; i < n; ++i) {
+    const double low = x.states.row(i).minCoeff(), high = x.states.row(i).maxCoeff();
+    most(i) = same * std::max(high - low, level::orbit * std::max(std::abs(low), std::abs(high)));
+  }
+  const auto are_alike = [&](const double* a, const double* b) {
+    for (int i = 0; i < n; ++i)
+      if (std::abs(a[i] - b[i]) > most(i)) return false;
+    return true;
+  };
   for (int s = 0; m > 1 && s < m; ++s)
-    if (std::abs(x.end(s)[i] - x.end((s + m / parts) % m)[i]) > most) return false;
-  for (std::size_t j = 0; m == 1 && j < x.mesh.size() && x.mesh[j] + 1.0 / parts <= 1.0; ++j)
-    if (std::abs(state_at(x, i, x.mesh[j]) - state_at(x, i, x.mesh[j] + 1.0 / parts)) > most) return false;
-  return true;
-}
-
-bool is_alike_later(const Orbit& x, int parts) {
-  for (int i = 0; i < x.shape.dimension; ++i)
-    if (!is_alike_later(x, i, parts)) return false;
+    if (!are_alike(x.end(s), x.end((s + m / parts) % m))) return false;
+  for (int j = 0; m == 1 && j <= x.shape.intervals_of(0) && x.mesh_of(0)[j] + 1.0 / parts <= 1.0; ++j) {
+    state_at(x, rule, 0, x.mesh_of(0)[j], now.data());
+    state_at(x, rule, 0, x.mesh_of(0)[j] + 1.0 / parts, later.data());
+    if (!are_alike(now.data(), later.data())) return false;
+  }
   return true;
 }
 
@@ -180,7 +167,7 @@ bool is_alike_later(const Orbit& x, int parts) {
 
 int RingAnalysis::like_parts(const Orbit& x) const {
   for (const int parts : {2, 3})
-    if (has_parts(system_, x, parts) && is_alike_later(x, parts)) return parts;
+    if (has_parts(system_, x, parts) && is_alike_later(x, rule_, parts)) return parts;
   return 1;
 }
 

@@ -5,6 +5,7 @@
 
 #include "continuation/orbit_trend.hpp"
 #include "files/solution_file.hpp"
+#include "orbit/collocation_rule.hpp"
 #include "orbit/defining_system.hpp"
 #include "run/data_start.hpp"
 #include "settings/problem_type.hpp"
@@ -68,7 +69,8 @@ class SegmentFamily : public SolutionFamily {
 
 class RingAnalysis : public BranchAnalysis {
  public:
-  RingAnalysis(const DefiningSystem& system, const OrbitShape& shape) : system_(system), floquet_(shape) {}
+  RingAnalysis(const DefiningSystem& system, const OrbitShape& shape)
+      : system_(system), floquet_(shape), rule_(shape.collocation) {}
 
   const FamilyFacts& facts() const override;
   void find_multipliers(const CondensedSystem& condensed, const Orbit& x, FloquetMultipliers& result) override {
@@ -93,6 +95,7 @@ class RingAnalysis : public BranchAnalysis {
  private:
   const DefiningSystem& system_;
   FloquetSolver floquet_;
+  CollocationRule rule_;
 };
 
 }  // namespace tchat

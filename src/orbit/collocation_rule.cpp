@@ -151,12 +151,19 @@ int interval_at(const Orbit& x, int s, double tau) {
 }
 
 Eigen::VectorXd state_at(const Orbit& x, const CollocationRule& rule, int s, double tau) {
+  Eigen::VectorXd state(x.shape.dimension);
+  state_at(x, rule, s, tau, state.data());
+  return state;
+}
+
+void state_at(const Orbit& x, const CollocationRule& rule, int s, double tau, double* state) {
   const int j = interval_at(x, s, tau);
   const double* const left = x.mesh_of(s) + j;
   const int c = x.shape.collocation;
-  Eigen::VectorXd basis(c + 1);
+  StackVector basis(c + 1);
   rule.basis((tau - left[0]) / (left[1] - left[0]), basis.data(), nullptr);
-  return x.states.middleCols(x.shape.first_node(s) + j * c, c + 1) * basis;
+  Eigen::Map<Eigen::VectorXd>(state, x.shape.dimension).noalias() =
+      x.states.middleCols(x.shape.first_node(s) + j * c, c + 1).lazyProduct(basis);
 }
 
 WeightedNorm::WeightedNorm(Eigen::VectorXd state_weights, ParameterVector parameter_weights)

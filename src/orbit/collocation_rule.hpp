@@ -74,6 +74,8 @@ int interval_at(const Orbit& x, int s, double tau);
 
 /// The collocation polynomial of segment s (from 0) at tau in [0, 1], n.
 Eigen::VectorXd state_at(const Orbit& x, const CollocationRule& rule, int s, double tau);
+/// The same into `state`, n, without an allocation.
+void state_at(const Orbit& x, const CollocationRule& rule, int s, double tau, double* state);
 
 // The inner product of pseudo-arclength continuation (5.50),
 //
