@@ -418,7 +418,7 @@ std::string stability_counts(const BranchSummary& summary) {
 
 std::string summary_text(const BranchSummary& summary, const std::vector<BranchWriter::Labelled>& labels,
                          const std::string& parameter, const std::string& output, const NextCommand& next) {
-  std::string text = fmt::format("\n{} points", summary.points);
+  std::string text = fmt::format("\n{} point{}", summary.points, summary.points == 1 ? "" : "s");
   if (summary.multipliers_computed && !summary.critical_curve) text += stability_counts(summary);
   text += labels_text(labels, output) + ".\n" + special_points(labels, next);
   const bool told = std::any_of(labels.begin(), labels.end(), [&summary](const BranchWriter::Labelled& label) {
