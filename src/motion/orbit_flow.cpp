@@ -15,11 +15,14 @@
 #include "model/parameter_vector.hpp"
 #include "model/scales.hpp"
 #include "motion/cvodes_flow.hpp"
+#include "motion/sparse_solver.hpp"
+#include "motion/tangent_flow.hpp"
 
 namespace tchat {
 
 namespace {
 
+using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
@@ -43,6 +46,16 @@ VectorXd checked_parameters(const HybridSystem& system, int field, const VectorX
     require(k >= 1 && k < system.layout().first_duration(),
             fmt::format("PAR({}) is no parameter, allowed are 1..{}.", k, system.layout().first_duration() - 1));
   return full_parameters(system, par);
+}
+
+/// Of many states, few of which others depend on, tangents along a flow of states alone are quicker than CVODES'
+/// sensitivities.
+bool has_few_entries(const HybridSystem& system, int field, const VectorXd& x0, const VectorXd& par) {
+  if (system.dimension() < least_sparse_dimension) return false;
+  VectorXd f(x0.size());
+  MatrixXd f_x(x0.size(), x0.size());
+  system.first(FunctionKind::field, field, x0.data(), par.data(), {}, f.data(), f_x.data(), nullptr);
+  return is_sparse(f_x);
 }
 
 SegmentFlow result_at(const CvodesFlow& flow, FlowStatus status) {
@@ -71,12 +84,32 @@ SegmentFlow integrate_segment(const HybridSystem& system, const IndexVector& ind
                               const VectorXd& par_given, const FlowOptions& options) {
   const VectorXd par = checked_parameters(system, index.field, x0, par_given, options);
   require_index(system, FunctionKind::event, index.event, "event function");
-  CvodesFlow flow(system, index.field, x0, par, options);
+  FlowOptions of_flow = options;
+  const bool is_by_tangents =
+      options.variational && options.active.empty() && has_few_entries(system, index.field, x0, par);
+  of_flow.variational = options.variational && !is_by_tangents;
+  CvodesFlow flow(system, index.field, x0, par, of_flow);
   flow.watch({index.event});
+  TangentFlow tangent(system, par, options.relative_tolerance);
+  MatrixXd jacobian = MatrixXd::Identity(x0.size(), x0.size());
+  if (is_by_tangents) {
+    tangent.use_sizes(options.sizes);
+    flow.on_piece(
+        [&](double from, double to) { return tangent.carry(jacobian, index.field, flow.dense_output(), from, to); });
+  }
   const Progress progress = flow.advance(options.max_duration);
   if (progress == Progress::failed) return result_at(flow, FlowStatus::failed);
   SegmentFlow result =
       result_at(flow, progress == Progress::root ? FlowStatus::event_reached : FlowStatus::time_reached);
+  if (is_by_tangents) {
+    result.jacobian = jacobian;
+    result.parameter_derivative.resize(x0.size(), 0);
+  }
+  if (progress == Progress::stopped) {
+    result.status = FlowStatus::failed;
+    result.message = no_finite_derivatives(system, FunctionKind::field, index.field, result.end_state);
+    return result;
+  }
   result.event_velocity = event_at(system, index.event, index.field, result.end_state.data(), par.data()).rate();
   if (result.status == FlowStatus::time_reached)
     result.message = fmt::format("{} did not fall to zero within time {:g}",
@@ -119,7 +152,6 @@ SegmentFlow integrate_for(const HybridSystem& system, int field, const VectorXd&
 
 namespace {
 
-using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 
 /// Values and derivatives at a terminal point: f, h_x, h_p, g, g_x, g_p with h_p, g_p by the active parameters.

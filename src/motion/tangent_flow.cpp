@@ -177,12 +177,20 @@ int TangentFlow::terms(double enough) const {
 
 /// V + Omega (V + Omega/2 (V + ...))
 void TangentFlow::apply_exponential(MatrixXd& vectors) {
+  const int count = terms(is_rough_ ? 1e-3 * most_difference : level::rounding);
+  if (has_few_entries_) {  // entries of one row of V together
+    rows_ = vectors;
+    row_term_ = rows_;
+    for (int k = count; k > 0; --k) {
+      row_product_.noalias() = sparse_.omega * row_term_;
+      row_term_ = rows_ + row_product_ / static_cast<double>(k);
+    }
+    vectors = row_term_;
+    return;
+  }
   term_ = vectors;
-  for (int k = terms(is_rough_ ? 1e-3 * most_difference : level::rounding); k > 0; --k) {
-    if (has_few_entries_)
-      product_.noalias() = sparse_.omega * term_;
-    else
-      product_.noalias() = dense_.omega * term_;
+  for (int k = count; k > 0; --k) {
+    product_.noalias() = dense_.omega * term_;
     term_ = vectors + product_ / static_cast<double>(k);
   }
   vectors.swap(term_);

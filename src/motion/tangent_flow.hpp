@@ -89,6 +89,7 @@ class TangentFlow {
   Series<Eigen::SparseMatrix<double>> sparse_;
   bool has_few_entries_ = false;  // A, that are not zero: the sparse series is that of this step
   Eigen::MatrixXd term_, product_;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows_, row_term_, row_product_;
   Eigen::VectorXd f_;
   Eigen::VectorXd units_;  // powers of two next to the sizes
   bool has_units_ = false;

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <boost/numeric/odeint/stepper/controlled_runge_kutta.hpp>
 #include <boost/numeric/odeint/stepper/dense_output_runge_kutta.hpp>
@@ -42,17 +43,22 @@ double last_change(double a, double b, const std::function<double(double)>& f) {
   return b;
 }
 
+/// So many derivatives by states are had at once: of more states the rate h_x f is had without the gradient.
+constexpr int states_of_a_pass = 8;
+
 }  // namespace
 
 EventWatch::EventWatch(const HybridSystem& system, int field, const std::vector<int>& events, const VectorXd& par,
                        const double* x0, const FlowOptions& options, const std::vector<int>& after)
     : system_(system), field_(field), par_(par), sizes_(options.sizes), f_(system.dimension()), h_x_(f_.size()) {
+  if (system.has_third() && system.dimension() > states_of_a_pass) along_.setZero(8 * f_.size());
   const double tolerance = options.surface_tolerance;
   for (const int event : events) {
     const Value start = at(event, x0);
+    const double start_scale = scale(event, x0);
     const bool is_after = std::find(after.begin(), after.end(), event) != after.end();
-    const bool is_near = std::abs(start.h) <= tolerance * start.scale;
-    const double around = is_after && !is_near ? std::abs(start.h) / start.scale : tolerance;
+    const bool is_near = std::abs(start.h) <= tolerance * start_scale;
+    const double around = is_after && !is_near ? std::abs(start.h) / start_scale : tolerance;
     const bool on_surface = is_after || is_near;
     Readiness readiness = start.h > 0.0 ? Readiness::armed : Readiness::below;
     if (on_surface) readiness = start.rate > 0.0 ? Readiness::leaving_upwards : Readiness::below;
@@ -66,17 +72,32 @@ void EventWatch::set_field(const double* x) const {
 
 EventWatch::Value EventWatch::on_field(int event, const double* x) const {
   Value value;
-  system_.first(FunctionKind::event, event, x, par_.data(), {}, &value.h, h_x_.data(), nullptr);
-  const double rate = h_x_.dot(f_);
+  double rate = 0.0;
+  if (along_.size() > 0) {
+    along_.head(f_.size()) = Eigen::Map<const VectorXd>(x, f_.size());
+    along_.segment(f_.size(), f_.size()) = f_;
+    std::array<double, 8> coefficients;
+    system_.third(FunctionKind::event, event, along_.data(), par_.data(), coefficients.data());
+    value.h = coefficients[0];
+    rate = coefficients[1];
+  } else {
+    system_.first(FunctionKind::event, event, x, par_.data(), {}, &value.h, h_x_.data(), nullptr);
+    rate = h_x_.dot(f_);
+  }
   value.rate = std::isfinite(rate) ? rate : 0.0;
-  const double scale = surface_scale(h_x_, x, sizes_);
-  value.scale = scale > 0.0 ? scale : 1.0;  // no gradient: a problem that does not give the one it says it has
   return value;
 }
 
 EventWatch::Value EventWatch::at(int event, const double* x) const {
   set_field(x);
   return on_field(event, x);
+}
+
+double EventWatch::scale(int event, const double* x) const {
+  double h = 0.0;
+  system_.first(FunctionKind::event, event, x, par_.data(), {}, &h, h_x_.data(), nullptr);
+  const double scale = surface_scale(h_x_, x, sizes_);
+  return scale > 0.0 ? scale : 1.0;  // no gradient: a problem that does not give the one it says it has
 }
 
 bool EventWatch::roots(const double* x, double* out) const {
@@ -120,9 +141,10 @@ std::optional<double> EventWatch::fall(Watched& watched, double end, double h, d
     if (is_above) return last_change(top, end, h_at);
     if (watched.readiness == Readiness::leaving_upwards) return top;  // a flight as short as rounding
   }
-  const double scale = at(event, state(end)).scale;
-  const bool has_risen = watched.readiness == Readiness::leaving_upwards || rate > 0.0 || h > watched.tolerance * scale;
-  if (h > 0.0 && has_risen) watched.readiness = Readiness::armed;
+  if (!(h > 0.0)) return std::nullopt;
+  const bool has_risen =
+      watched.readiness == Readiness::leaving_upwards || rate > 0.0 || h > watched.tolerance * scale(event, state(end));
+  if (has_risen) watched.readiness = Readiness::armed;
   return std::nullopt;
 }
 

@@ -91,13 +91,14 @@ class EventWatch {
   double rate(int event, const double* x) const;
 
  private:
-  /// h_j, its rate h_x f (0 where it cannot be evaluated), and what rounding of the state makes of h.
+  /// h_j and its rate h_x f, 0 where it cannot be evaluated.
   struct Value {
-    double h = 0.0, rate = 0.0, scale = 1.0;
+    double h = 0.0, rate = 0.0;
   };
   void set_field(const double* x) const;
   Value on_field(int event, const double* x) const;  // the field has been set
   Value at(int event, const double* x) const;
+  double scale(int event, const double* x) const;  // what rounding of the state makes of h
 
   enum class Readiness { below, leaving_upwards, armed };
   struct Watched {
@@ -121,7 +122,7 @@ class EventWatch {
   // What is looked at at every step is kept here.
   std::vector<Watched> before_;
   std::vector<double> now_;
-  mutable Eigen::VectorXd f_, h_x_;
+  mutable Eigen::VectorXd f_, h_x_, along_;  // the last: x, f and zeros for HybridSystem::third; empty if not used
   std::vector<Contact> contacts_;
 };
 

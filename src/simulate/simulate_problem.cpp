@@ -173,6 +173,7 @@ bool go_on(HybridSimulation& simulation, LyapunovAccumulator& exponents, double 
     if (done < next_look) return false;
     const LyapunovSpectrum spectrum = exponents.spectrum();
     next_look += next_look / 4;
+    if (done >= most_undecided && !search.unbounded(simulation.system()).empty()) return true;  // as it will
     return spectrum.accuracy() <= accuracy && (signs_of(spectrum).unclear == 0 || done >= most_undecided);
   };
   return !settle(simulation, plan_of_events(most_measured), is_enough).has_ended;
