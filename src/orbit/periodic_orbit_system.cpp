@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/levels.hpp"
 #include "orbit/collocation_rule.hpp"
@@ -129,8 +130,10 @@ ConservativeOrbitSystem::ConservativeOrbitSystem(const HybridSystem& system, con
       flow_(gradient_.size()),
       after_(gradient_.size()) {}
 
-void ConservativeOrbitSystem::find_gradient(const Orbit& x) const {
+void ConservativeOrbitSystem::find_direction(const Orbit& x) const {
   conserved_.first(x.start(0), x.par.data(), gradient_.data(), unused_.data());
+  Eigen::Map<VectorXd> gradient(gradient_.data(), dimension());
+  gradient /= std::max(gradient.norm(), std::numeric_limits<double>::min());
 }
 
 void ConservativeOrbitSystem::target_pattern(int s, int row, CouplingPattern& pattern) const {
@@ -141,7 +144,7 @@ void ConservativeOrbitSystem::target_pattern(int s, int row, CouplingPattern& pa
 void ConservativeOrbitSystem::target_value(int s, const Orbit& x, double* target) const {
   PeriodicOrbitSystem::target_value(s, x, target);
   if (!closes(s)) return;
-  find_gradient(x);
+  find_direction(x);
   const double lambda = x.par(layout().unfolding(segments()) - 1);
   for (int a = 0; a < dimension(); ++a) target[a] += lambda * gradient_[static_cast<std::size_t>(a)];
 }
@@ -179,10 +182,8 @@ std::string ConservativeOrbitSystem::jump_name(int s) const {
 
 std::string ConservativeOrbitSystem::why_not_closed(const Orbit& x) const {
   constexpr double gap = level::located;  // of the states where the ring closes
-  find_gradient(x);
   const double lambda = x.par(layout().unfolding(segments()) - 1);
-  const double slope = Eigen::Map<const VectorXd>(gradient_.data(), dimension()).norm();
-  if (std::abs(lambda) * slope <= gap * x.states.cwiseAbs().maxCoeff()) return "";
+  if (std::abs(lambda) <= gap * x.states.cwiseAbs().maxCoeff()) return "";
   std::string places;
   double largest = 0.0;
   const auto look = [&](double change, const std::string& place) {

@@ -50,14 +50,16 @@ class PeriodicOrbitSystem : public RingSystem {
 // singular. The unfolding parameter lambda takes that parameter's place (Munoz-Almaraz, Freire, Galan, Doedel,
 // Vanderbauwhede, Physica D 181, 2003, 1-38), in the jump that closes the ring,
 //
-//     x_1(0) + lambda H_x(x_1(0), p) = g_{k_m}(x_m(1), p).
+//     x_1(0) + lambda e = g_{k_m}(x_m(1), p),   e = H_x / |H_x| at x_1(0).
+//
+// The direction has the length 1, so that lambda is as large as what is left of the states, whatever the unit of H.
 //
 // Unknowns: n m functions, m durations, lambda, and one parameter for each held monitor. Conditions: n m + m boundary
 // conditions, the held monitors, pseudo-arclength. For a solution, to first order H(x_1(0)) = H(g) - lambda
-// |H_x|^2, and H(x_1(0)) = H(g) where H is conserved: lambda = 0. The computed lambda measures the error; a large one
+// |H_x|, and H(x_1(0)) = H(g) where H is conserved: lambda = 0. The computed lambda measures the error; a large one
 // means that H is not conserved.
 //
-// The derivative by x_1(0) leaves lambda H_xx out, which is zero at solutions: Newton's method still converges
+// The derivative by x_1(0) leaves lambda e_x out, which is zero at solutions: Newton's method still converges
 // quadratically.
 
 class ConservativeOrbitSystem final : public PeriodicOrbitSystem {
@@ -79,8 +81,8 @@ class ConservativeOrbitSystem final : public PeriodicOrbitSystem {
 
  private:
   bool closes(int s) const { return s == segments() - 1; }
-  /// H_x at x_1(0).
-  void find_gradient(const Orbit& x) const;
+  /// e.
+  void find_direction(const Orbit& x) const;
   std::string why_not_closed(const Orbit& x) const;
   std::string why_not_constant(const Orbit& x) const;
   std::string why_not_constant_on(int s, const Orbit& x) const;
