@@ -326,7 +326,9 @@ FittedCurve fit_invariant_curve(const MatrixXd& points, const CurveSettings& set
   const VectorXd angles =
       settings.angles.empty() ? turning_angles(points) : VectorXd(points.row(settings.angles.front()) / full_turn);
   const VectorXd steps = lifted_steps(angles);
-  const double rotation = phase_fraction(bump(steps.size()).dot(steps));
+  const double turned = phase_fraction(bump(steps.size()).dot(steps));
+  // Without an angle the curve has two directions: the one in which a return is less than half a turn.
+  const double rotation = settings.angles.empty() ? std::min(turned, 1.0 - turned) : turned;
   const Index count = points.cols();
   const auto refuse = [&](const std::string& why) { return UserError(fmt::format("{}: {}", source, why)); };
   if (widest_gap(phases_of(rotation, count)) > 0.05)
