@@ -343,12 +343,15 @@ Eigen::MatrixXd periodic_section_curve(const TorusSystem& system, const Orbit& x
 double mean_return_time(const TorusSystem& system, const Orbit& x) { return x.period() / system.orbits(); }
 
 Eigen::VectorXd torus_harmonics(const TorusSystem& system, const Orbit& x) {
-  const Eigen::VectorXd ranges = (x.states.rowwise().maxCoeff() - x.states.rowwise().minCoeff())
-                                     .cwiseMax(level::negligible * x.states.cwiseAbs().maxCoeff());
+  const Eigen::VectorXd largest = x.states.cwiseAbs().rowwise().maxCoeff();
+  std::vector<bool> rounding;
+  for (const double value : largest) rounding.push_back(value <= level::negligible * largest.maxCoeff());
+  const Eigen::VectorXd sizes =
+      sizes_of_differences(x.states.rowwise().minCoeff(), x.states.rowwise().maxCoeff(), rounding);
   const Eigen::MatrixXd columns = periodic_columns(x, system.orbits(), system.winding().curve);
   const Eigen::Index m = system.segments_per_return();
   Eigen::VectorXd scale(columns.rows());
-  for (Eigen::Index r = 0; r + m < columns.rows(); ++r) scale(r) = ranges(r % x.shape.dimension);
+  for (Eigen::Index r = 0; r + m < columns.rows(); ++r) scale(r) = sizes(r % x.shape.dimension);
   scale.tail(m).setConstant(mean_return_time(system, x));
   return harmonic_sizes(columns, scale);
 }

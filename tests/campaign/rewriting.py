@@ -281,7 +281,7 @@ class ProblemRewriting:
                   for a, name in enumerate(self.new_states)]
         given = {self.new_name(name): values[0] for name, values in pairs_of(constants.get("THL", "{}"))}
         wanted = {name: repr(self.unit(name)**2) for name in self.parameters}
-        if constants["IPS"] in ("180", "150", "4"):
+        if constants["IPS"] in ("180", "150", "4", "182", "152"):
             for s in range(len(list_of(constants.get("GCFIND", "[1]")))):
                 wanted[str(FIRST_DURATION + s)] = repr(self.by.time**2)
         return ["THU={%s}" % ", ".join(states),
