@@ -346,7 +346,7 @@ std::vector<double> divided(const std::vector<double>& mesh, int parts) {
   return tau;
 }
 
-/// The orbit's states on a mesh, exact at its nodes.
+/// The orbit's states on a mesh, in units of their sizes, exact at its nodes.
 Orbit on_mesh(const HybridSystem& system, const FoundOrbit& orbit, const VectorXd& par, std::vector<double> mesh,
               int collocation) {
   const int n = system.dimension();
@@ -355,7 +355,8 @@ Orbit on_mesh(const HybridSystem& system, const FoundOrbit& orbit, const VectorX
   Orbit x{shape, std::move(mesh), MatrixXd(n, shape.columns()), ParameterVector(system.layout(), m)};
   const MatrixXd stacked = sample_all(system, orbit, par, x.node_times());
   for (int s = 0; s < m; ++s) {
-    x.states.middleCols(s * shape.nodes(), shape.nodes()) = stacked.middleRows(s * n, n);
+    x.states.middleCols(s * shape.nodes(), shape.nodes()) =
+        orbit.sizes.unaryExpr(&size_for_tolerance).cwiseInverse().asDiagonal() * stacked.middleRows(s * n, n);
     x.duration(s) = orbit.map.segments[static_cast<std::size_t>(s)].duration;
   }
   return x;

@@ -142,7 +142,7 @@ std::vector<double> equal_parts(Mesh mesh, const Eigen::VectorXd& density, int p
   return result;
 }
 
-/// |u^(c+1)| of all components of all segments that last. Where the estimates of a component are rounding on every
+/// |u^(c+1) / size of u| of all components of all segments that last. Where the estimates of a component are rounding on every
 /// interval of a segment (a polynomial of degree c, or one resolved to rounding), it does not count. An estimate of
 /// another one counts for at least its rounding, whose (c+1)-th root is proportional to 1 / h: where an error is too
 /// small to be seen, the mesh stays.
@@ -152,9 +152,9 @@ void MeshEquidistribution::Monitor::add_segment(const OrbitShape& shape, const E
     if (is_rounding(k)) continue;
     ++known;
     for (Eigen::Index j = 0; j < values.size(); ++j) {
-      const double derivative = std::max(derivatives(k, j), rounding(k, j));
+      const double derivative = std::max(derivatives(k, j), rounding(k, j)) / sizes(k);
       values(j) += std::pow(derivative, root);
-      largest(j) = std::max(largest(j), derivative / sizes(k));
+      largest(j) = std::max(largest(j), derivative);
     }
   }
 }

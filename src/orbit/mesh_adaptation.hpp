@@ -14,9 +14,9 @@ namespace tchat {
 // Meshes that follow the solution: equidistribution of the estimated local error, and transfer between meshes.
 //
 // The (c+1)-th derivative of the exact solution is estimated by differencing the c-th derivatives of the polynomials
-// of neighbouring intervals. The monitor is the sum over components and segments of |u^(c+1)|^(1/(c+1)) where one mesh
-// in tau serves all segments; where each has its own mesh it is that segment's sum, and the integrals of
-// |u^(c+1) / size of u|^(1/(c+1)) over the segments decide how many of the m N intervals each of them gets. Segments
+// of neighbouring intervals. The monitor is the sum over components and segments of |u^(c+1) / size of u|^(1/(c+1))
+// where one mesh in tau serves all segments; where each has its own mesh it is that segment's sum, and its integrals
+// over the segments decide how many of the m N intervals each of them gets. Units of states do not matter. Segments
 // of zero duration have no weight, nor have components whose estimates are rounding.
 
 /// A segment with a mesh of its own has so many intervals at least, where N is not smaller: what four lanes do at once.
