@@ -54,19 +54,26 @@ double difference_of_halves(const TestedPoint& point, int segments) {
   return differences_of_halves(point.orbit, segments, point.condensed.rule()).cwiseAbs().maxCoeff() / size;
 }
 
+/// What <row, v> is made of: products of the lengths of the parts that have one unit each, the states, the durations and
+/// every parameter.
+double terms_of_product(const OrbitVector& row, const OrbitVector& v) {
+  return row.states.norm() * v.states.norm() + row.durations.norm() * v.durations.norm() +
+         row.globals.cwiseAbs().dot(v.globals.cwiseAbs());
+}
+
 class CuspTest final : public TestFunction {
  public:
   CuspTest(const CriticalMultiplier& fold, const DefiningSystem& system)
       : fold_(fold), segments_(system.segments()), may_be_doubled_(may_be_doubled(system.signature())) {}
   std::string name() const override { return "cusp"; }
-  /// The zero level is relative to the sizes of the two vectors. Where the halves of doubled orbits meet the function
+  /// The zero level is relative to the terms of the product. Where the halves of doubled orbits meet the function
   /// vanishes with the third power of their difference, and is undefined where that is no more than the zero level.
   TestValue evaluate(const TestedPoint& point) const override {
     constexpr double meeting = 0.01;
     if (may_be_doubled_ && difference_of_halves(point, segments_) < meeting) return TestValue::undefined();
     const OrbitVector& gradient = fold_.gradient(0);
     const OrbitVector& v = fold_.null_vector();
-    return TestValue::of(fold_.cusp_function(), orbit_accuracy * std::sqrt(dot(gradient, gradient) * dot(v, v)));
+    return TestValue::of(fold_.cusp_function(), orbit_accuracy * terms_of_product(gradient, v));
   }
   /// Where a segment ends tangentially the function has a pole.
   bool is_genuine(const TestedPoint& point) const override { return touching_segment(point) < 0; }
