@@ -88,7 +88,29 @@ double* ContactRow::derivatives(const HybridSystem& system, const IndexVector& v
 
 RingSystem::RingSystem(const HybridSystem& system, Signature signature, std::vector<int> free_parameters)
     : DefiningSystem(system, std::move(signature), std::move(free_parameters)),
-      contact_row_(dimension(), free_count()) {}
+      contact_row_(dimension(), free_count()),
+      units_(static_cast<std::size_t>(segments())) {}
+
+double RingSystem::unit_of_end(int s, int r) const {
+  const std::vector<double>& units = units_[static_cast<std::size_t>(s)];
+  return units.empty() ? 1.0 : units[static_cast<std::size_t>(r)];
+}
+
+/// Nothing while a derivative is zero or not finite.
+void RingSystem::find_units(int s, const Orbit& x) const {
+  std::vector<double>& units = units_[static_cast<std::size_t>(s)];
+  const int count = end_conditions(s);
+  if (!units.empty() || count == 0) return;
+  std::vector<double> values(static_cast<std::size_t>(count)), found;
+  Eigen::MatrixXd by_state(count, dimension()), by_parameter(count, free_count());
+  end_derivatives(s, x.end(s), x.par.data(), values.data(), by_state.data(), by_parameter.data());
+  for (int r = 0; r < count; ++r) {
+    const double largest = by_state.row(r).cwiseAbs().maxCoeff();
+    if (!(largest > 0.0) || !std::isfinite(largest)) return;
+    found.push_back(std::exp2(std::round(std::log2(largest))));
+  }
+  units = std::move(found);
+}
 
 bool RingSystem::is_divided(int s, const Orbit& x) const {
   constexpr double long_enough = 0.1;  // of the longest
@@ -133,10 +155,12 @@ std::string RingSystem::target_name(int s) const {
 void RingSystem::coupling_values(int s, const Orbit& x, double* values) const {
   const double* par = x.par.data();
   const IndexVector& v = signature()[static_cast<std::size_t>(s)];
+  find_units(s, x);
   if (is_divided(s, x))
     values[0] = contact_row_.value(system(), v, x, s, free_parameters());
   else
     end_values(s, x.end(s), par, values);
+  for (int r = 0; r < end_conditions(s); ++r) values[r] /= unit_of_end(s, r);
   double* connection = values + end_conditions(s);
   value_.resize(static_cast<std::size_t>(std::max(end_conditions(s), dimension())));
   system().value(FunctionKind::jump, v.jump, x.end(s), par, value_.data());
@@ -153,14 +177,24 @@ void RingSystem::put(const std::vector<double>& columns, int row_count, int colu
 }
 
 double* RingSystem::end_rows(int s, const Orbit& x, double* values, double* entries) const {
-  if (is_divided(s, x))
-    return contact_row_.derivatives(system(), signature()[static_cast<std::size_t>(s)], x, s, free_parameters(),
-                                    values[0], entries);
-  end_derivatives(s, x.end(s), x.par.data(), values, by_state_.data(), by_parameter_.data());
-  if (is_contact(s)) entries = std::fill_n(entries, dimension(), 0.0);  // by the start
-  put(by_state_, end_conditions(s), dimension(), 1.0, entries);
-  if (is_contact(s)) *entries++ = 0.0;  // by the duration
-  put(by_parameter_, end_conditions(s), free_count(), 1.0, entries);
+  find_units(s, x);
+  if (is_divided(s, x)) {
+    double* const begin = entries;
+    entries = contact_row_.derivatives(system(), signature()[static_cast<std::size_t>(s)], x, s, free_parameters(),
+                                       values[0], entries);
+    std::for_each(begin, entries, [unit = unit_of_end(s, 0)](double& entry) { entry /= unit; });
+  } else {
+    const int count = end_conditions(s);
+    end_derivatives(s, x.end(s), x.par.data(), values, by_state_.data(), by_parameter_.data());
+    for (int k = 0; k < count * dimension(); ++k) by_state_[static_cast<std::size_t>(k)] /= unit_of_end(s, k % count);
+    for (int k = 0; k < count * free_count(); ++k)
+      by_parameter_[static_cast<std::size_t>(k)] /= unit_of_end(s, k % count);
+    if (is_contact(s)) entries = std::fill_n(entries, dimension(), 0.0);  // by the start
+    put(by_state_, count, dimension(), 1.0, entries);
+    if (is_contact(s)) *entries++ = 0.0;  // by the duration
+    put(by_parameter_, count, free_count(), 1.0, entries);
+  }
+  for (int r = 0; r < end_conditions(s); ++r) values[r] /= unit_of_end(s, r);
   return entries;
 }
 

@@ -86,12 +86,15 @@ class RingSystem : public DefiningSystem {
   double* coupling_derivatives(int s, const Orbit& x, double* values, double* entries) const final;
   std::string coupling_name(int s, int r) const final;
   double coupling_unit(int s, int r) const final {
-    return r < end_conditions(s) ? 1.0 : system().unit_of(r - end_conditions(s) + 1);
+    return r < end_conditions(s) ? unit_of_end(s, r) : system().unit_of(r - end_conditions(s) + 1);
   }
   std::string coupling_failure(int s, const Orbit& x) const final;
 
   /// Is the end condition of segment s divided by its duration at x?
   bool is_divided(int s, const Orbit& x) const;
+
+  // Rows of end conditions are divided by the size of their derivatives by the state where these were first asked for,
+  // a power of two: a factor of an event function is to change nothing.
 
   /// Number of scalar conditions on x_s(1), s = 0..m-1.
   virtual int end_conditions(int s) const = 0;
@@ -118,10 +121,14 @@ class RingSystem : public DefiningSystem {
   /// May it be divided?
   bool is_contact(int s) const { return is_contact_segment(s) && end_conditions(s) == 1; }
   double* end_rows(int s, const Orbit& x, double* values, double* entries) const;
+  /// 1 where it is not known yet.
+  double unit_of_end(int s, int r) const;
+  void find_units(int s, const Orbit& x) const;
   void put(const std::vector<double>& columns, int row_count, int column_count, double factor, double*& entries) const;
 
   mutable ContactRow contact_row_;
   mutable std::vector<double> value_, by_state_, by_parameter_;  // of one group, for Newton's loop is not to allocate
+  mutable std::vector<std::vector<double>> units_;               // of the end conditions of each segment
 };
 
 // A ring of segments whose conditions are unfolded: b phi_r is added to coupling row r,
