@@ -142,10 +142,10 @@ std::vector<double> equal_parts(Mesh mesh, const Eigen::VectorXd& density, int p
   return result;
 }
 
-/// |u^(c+1) / size of u| of all components of all segments that last. Where the estimates of a component are rounding on every
-/// interval of a segment (a polynomial of degree c, or one resolved to rounding), it does not count. An estimate of
-/// another one counts for at least its rounding, whose (c+1)-th root is proportional to 1 / h: where an error is too
-/// small to be seen, the mesh stays.
+/// |u^(c+1) / size of u| of all components of all segments that last. Where the estimates of a component are rounding
+/// on every interval of a segment (a polynomial of degree c, or one resolved to rounding), it does not count. An
+/// estimate of another one counts for at least its rounding, whose (c+1)-th root is proportional to 1 / h: where an
+/// error is too small to be seen, the mesh stays.
 void MeshEquidistribution::Monitor::add_segment(const OrbitShape& shape, const Eigen::VectorXd& sizes) {
   const double root = 1.0 / (shape.collocation + 1);
   for (int k = 0; k < shape.dimension; ++k) {

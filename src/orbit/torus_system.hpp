@@ -147,8 +147,8 @@ Eigen::MatrixXd periodic_section_curve(const TorusSystem& system, const Orbit& x
 double mean_return_time(const TorusSystem& system, const Orbit& x);
 
 /// Sizes of the harmonics k = 0..Q of all nodes of the orbits as functions of phi, each state in its size of
-/// differences (sizes_of_differences()), the largest over nodes and states; those of the durations, in units of the mean return time, among
-/// them. The last ones are what the trigonometric polynomial leaves out.
+/// differences (sizes_of_differences()), the largest over nodes and states; those of the durations, in units of the
+/// mean return time, among them. The last ones are what the trigonometric polynomial leaves out.
 Eigen::VectorXd torus_harmonics(const TorusSystem& system, const Orbit& x);
 
 /// The larger of the last two harmonics but the mean: the error figure of a torus.

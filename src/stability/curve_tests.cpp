@@ -54,8 +54,8 @@ double difference_of_halves(const TestedPoint& point, int segments) {
   return differences_of_halves(point.orbit, segments, point.condensed.rule()).cwiseAbs().maxCoeff() / size;
 }
 
-/// What <row, v> is made of: products of the lengths of the parts that have one unit each, the states, the durations and
-/// every parameter.
+/// What <row, v> is made of: products of the lengths of the parts that have one unit each, the states, the durations
+/// and every parameter.
 double terms_of_product(const OrbitVector& row, const OrbitVector& v) {
   return row.states.norm() * v.states.norm() + row.durations.norm() * v.durations.norm() +
          row.globals.cwiseAbs().dot(v.globals.cwiseAbs());

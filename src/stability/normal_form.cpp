@@ -255,9 +255,10 @@ std::optional<Coefficient> NormalFormSolver::find(CondensedSystem& condensed, co
   double amplified = amplification(multipliers, 1.0);
   if (critical.imag() != 0.0) amplified += amplification(multipliers, critical * critical);
   const double accuracy = multiplier_accuracy(multipliers);
-  const double size = x.states.cwiseAbs().maxCoeff();
+  const Eigen::VectorXd sizes = x.states.cwiseAbs().rowwise().maxCoeff().unaryExpr(&size_for_tolerance);
+  const double length = vectors_.right.head(n).cwiseQuotient(sizes).norm();
   const double of_terms = (error_of_sums(system_.system()) + accuracy * amplified) * sum.size;
-  return Coefficient{sum.value.real(), of_terms + accuracy / (size * size)};
+  return Coefficient{sum.value.real() / (length * length), of_terms / (length * length) + accuracy};
 }
 
 namespace {
