@@ -168,6 +168,8 @@ using Eigen::VectorXd;
 
 constexpr double same_parameter = level::orbit;  // of the largest |p| of the branch
 constexpr double same_orbit = level::same, clearly_different = level::five_digits;
+/// The parameter of a fold is known far better than the place on the branch.
+constexpr double same_at_fold = level::visible;
 
 /// Has the parameter of a branch this value of another one?
 bool is_at(double parameter, double value, const CataloguedSection& branch) {
@@ -323,7 +325,7 @@ bool BranchRecognition::is_same(const OwnOrbit& own, const CataloguedSection& kn
   if (own.solution.problem_type != other.problem_type) return false;
   const auto a = compared_orbit(system_, own.solution, own.section->own_signature),
              b = compared_orbit(system_, other, known.own_signature);
-  return a && b && orbit_distance(*a, *b) <= same_orbit;
+  return a && b && orbit_distance(*a, *b) <= (is_at_fold(own.solution) ? same_at_fold : same_orbit);
 }
 
 BranchRecognition::Verdict BranchRecognition::compare(const OwnOrbit& own, const std::string& branch) const {

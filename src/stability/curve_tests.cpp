@@ -363,7 +363,7 @@ class CubicTermTest final : public TestFunction {
     const std::optional<Coefficient> form =
         solver_->find(point.condensed, point.orbit, *point.condition, point.multipliers);
     if (!form) return TestValue::undefined();
-    const double factor = *product.value / (1.0 + std::abs(*product.value));
+    const double factor = *product.value / (1.0 + std::abs(*product.value)) / solver_->square_in_sizes(point.orbit);
     return TestValue::of(form->value * factor, form->uncertainty * std::abs(factor));
   }
   /// Where the other multiplier does not act on the critical one there is no pole, and what vanishes is the factor.

@@ -255,10 +255,15 @@ std::optional<Coefficient> NormalFormSolver::find(CondensedSystem& condensed, co
   double amplified = amplification(multipliers, 1.0);
   if (critical.imag() != 0.0) amplified += amplification(multipliers, critical * critical);
   const double accuracy = multiplier_accuracy(multipliers);
-  const Eigen::VectorXd sizes = x.states.cwiseAbs().rowwise().maxCoeff().unaryExpr(&size_for_tolerance);
-  const double length = vectors_.right.head(n).cwiseQuotient(sizes).norm();
   const double of_terms = (error_of_sums(system_.system()) + accuracy * amplified) * sum.size;
-  return Coefficient{sum.value.real() / (length * length), of_terms / (length * length) + accuracy};
+  return Coefficient{sum.value.real(), of_terms + accuracy * square_in_sizes(x)};
+}
+
+double NormalFormSolver::square_in_sizes(const Orbit& x) const {
+  double sum = 0.0;
+  for (Eigen::Index a = 0; a < x.shape.dimension; ++a)
+    sum += std::norm(vectors_.right(a) / size_for_tolerance(x.states.row(a).cwiseAbs().maxCoeff()));
+  return sum;
 }
 
 namespace {

@@ -122,10 +122,9 @@ std::optional<NormalForm> normal_form(const DefiningSystem& system, const Orbit&
 std::optional<BranchingForm> orbit_branching(const DefiningSystem& system, const Orbit& x);
 
 /// c or Re d at points of a curve of period doublings or torus bifurcations, from the linearisation that Newton's
-/// method has left there and from the vectors of the curve's condition; |q| = 1 in sizes of the states, for in units of
-/// the user q may all but vanish where the section is. The uncertainty has two parts: the errors of the return map in
-/// each term, which are larger near the poles of (1 - A)^-1 and (mu^2 - A)^-1, and the accuracy of multipliers: a
-/// coefficient that changes multipliers by less where states are as large as on the orbit counts as zero. Allocates at
+/// method has left there and from the vectors of the curve's condition. The uncertainty has two parts: the errors of
+/// the return map in each term, which are larger near the poles of (1 - A)^-1 and (mu^2 - A)^-1, and the accuracy of
+/// multipliers: a coefficient that changes them by less where states are as large as on the orbit is zero. Allocates at
 /// the first point of a shape, and where third derivatives are differences.
 class NormalFormSolver {
  public:
@@ -134,6 +133,9 @@ class NormalFormSolver {
   /// of their own, or equations are singular.
   std::optional<Coefficient> find(CondensedSystem& condensed, const Orbit& x, const OrbitCondition& condition,
                                   const FloquetMultipliers& multipliers);
+  /// |q|^2 of the last one in sizes of the states of x. In units of the user, where |q| = 1, q may all but vanish at
+  /// some section and c have a pole; c over this has none.
+  double square_in_sizes(const Orbit& x) const;
 
  private:
   const DefiningSystem& system_;

@@ -76,7 +76,8 @@ class Diagram:
             self.call("run b", "run", "system", "-c", "s", "-d", "s", "-o", "b", "--both", "--clip",
                       "ICP=[%s]" % name, "THU={%s}" % weights,
                       "THL={%s: %r%s}" % (name, (unit / width)**2, self.durations()), "DS=0.005", "DSMAX=0.03",
-                      "NMX=%d" % POINTS, "EPSL=1e-10", "EPSU=1e-10", "EPSS=1e-9", "RL0=%r" % (bounds[0] / unit), "RL1=%r" % (bounds[1] / unit))
+                      "NMX=%d" % POINTS, "EPSL=1e-10", "EPSU=1e-10", "EPSS=1e-9",
+                      "RL0=%r" % (bounds[0] / unit), "RL1=%r" % (bounds[1] / unit))
             rows = json.loads(self.call(None, "table", "--json", "p.b"))
             self.sections["run b"] = problem_pipelines.sections_of(rows, {name: unit, "PERIOD": by.time})
         except problem_pipelines.CommandFailed:

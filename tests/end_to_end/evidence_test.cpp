@@ -183,7 +183,7 @@ TEST_CASE("a label's own orbit has the multiplier of its type, also where orbits
   workspace.write("canard.tch", canard);
   out_of(workspace, {"simulate", "canard", "--dat", "canard"});
   const std::string out =
-      out_of(workspace, {"run", "canard", "-c", "canard", "-d", "canard", "NTST=20", "DS=0.02", "DSMAX=0.231",
+      out_of(workspace, {"run", "canard", "-c", "canard", "-d", "canard", "NTST=15", "DS=0.02", "DSMAX=0.231",
                          "DSMIN=0", "NMX=150", "NPR=10", "RL0=0.2", "RL1=1.6", "ICP=[I,multiplier(1)]"});
   INFO(out);
   for (const PointSection& section : workspace.points("canard"))
