@@ -8,6 +8,7 @@
 #include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "model/events.hpp"
+#include "model/scales.hpp"
 #include "orbit/admissibility.hpp"
 #include "resegment/contact_point.hpp"
 #include "resegment/signature_match.hpp"
@@ -453,12 +454,15 @@ bool is_contact_born(const CutList& cut, std::size_t k, const LabelledOrbit& sou
     throw UserError(fmt::format("{}: no orbit with a short contact with {} begins here: {}", source.name,
                                 event_name(system, before.index.event), why));
   };
-  if (met.rate() > tangent_contact * met.sizes())
+  // The fastest of all states, in their sizes, against what h makes of these.
+  const Eigen::VectorXd sizes = x.states.cwiseAbs().rowwise().maxCoeff().unaryExpr(&size_for_tolerance);
+  const double scale = met.gradient.cwiseAbs().dot(sizes) * met.f.cwiseQuotient(sizes).cwiseAbs().maxCoeff();
+  if (met.rate() > tangent_contact * scale)
     refuse(
         fmt::format("beyond the surface {} leads back to it at once (h_x f = {:.4g}, not 0), so that orbits slide "
                     "along it: the signature with a sliding mode, --to signature",
                     field_text(system, field), met.rate()));
-  if (met.rate() < -tangent_contact * met.sizes())
+  if (met.rate() < -tangent_contact * scale)
     refuse(
         fmt::format("beyond the surface {} leads away from it (h_x f = {:.4g}, not 0), so that the orbit does not "
                     "come back soon; a simulation shows where it goes (tchat simulate NAME --dat O)",

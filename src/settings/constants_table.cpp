@@ -8,6 +8,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "base/levels.hpp"
 #include "base/words.hpp"
 #include "model/hybrid_system.hpp"
 #include "settings/point_type.hpp"
@@ -22,6 +23,7 @@ using R = RunSettings;
 Limits range(double lowest, double highest) { return {lowest, highest}; }
 Limits at_least(double lowest) { return {lowest}; }
 Limits positive() { return {.lowest = 0.0, .lowest_excluded = true}; }
+Limits above_rounding() { return at_least(level::rounding_of_sums); }  // as corrections of Newton's method are
 Limits nonzero() { return {.zero_excluded = true}; }
 Limits one_of(std::vector<int> choices) { return {.choices = std::move(choices)}; }
 Limits any() { return {}; }
@@ -92,8 +94,8 @@ std::vector<Constant> make_table() {
        ""},
       {"JAC", "who supplies derivatives", 5, &R::jacobian, range(-1, 1), "", "0",
        "read and kept, no effect: GCIDIFF and the problem decide"},
-      {"EPSL", "relative tolerance of parameters", 6, &R::tolerance_parameters, positive(), "", "1e-7", ""},
-      {"EPSU", "relative tolerance of states", 6, &R::tolerance_states, positive(), "", "1e-7", ""},
+      {"EPSL", "relative tolerance of parameters", 6, &R::tolerance_parameters, above_rounding(), "", "1e-7", ""},
+      {"EPSU", "relative tolerance of states", 6, &R::tolerance_states, above_rounding(), "", "1e-7", ""},
       {"EPSS", "relative tolerance of special points", 6, &R::tolerance_special, positive(), "", "1e-5", ""},
       {"DS", "first step along the branch, its sign is the direction", 7, &R::step, nonzero(), "", "0.01", ""},
       {"DSMIN", "smallest step", 7, &R::step_min, at_least(0), "", "0.0", ""},
