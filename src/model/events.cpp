@@ -28,6 +28,11 @@ double surface_scale(const Eigen::VectorXd& gradient, const double* x, const Eig
   return gradient.cwiseAbs().dot(state.cwiseAbs().cwiseMax(sizes));
 }
 
+double EventAt::rate_scale(const Eigen::VectorXd& sizes) const {
+  const Eigen::VectorXd counted = sizes.unaryExpr(&size_for_tolerance);
+  return gradient.cwiseAbs().dot(counted) * f.cwiseQuotient(counted).cwiseAbs().maxCoeff();
+}
+
 EventAt event_at(const HybridSystem& system, int event, const double* x, const double* par) {
   EventAt at{0.0, Eigen::VectorXd(system.dimension()), {}};
   system.first(FunctionKind::event, event, x, par, {}, &at.h, at.gradient.data(), nullptr);

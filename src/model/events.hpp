@@ -39,6 +39,9 @@ struct EventAt {
   double rate() const { return gradient.dot(f); }              ///< h_x f
   double sizes() const { return gradient.norm() * f.norm(); }  ///< |h_x| |f|
   double scale(const double* x, const Eigen::VectorXd& sizes = {}) const { return surface_scale(gradient, x, sizes); }
+  /// Of h_x f where states have these sizes (n): sum |h_x,i| size_i, in the time in which the fastest of them changes
+  /// by its size. |h_x| |f| instead adds states of different units.
+  double rate_scale(const Eigen::VectorXd& sizes) const;
   /// Onto the surface of the event, along the flow.
   Eigen::MatrixXd project(const Eigen::MatrixXd& v) const { return project_along_flow(f, gradient, v); }
 };

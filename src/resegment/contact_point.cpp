@@ -122,14 +122,15 @@ constexpr double same_place = level::located;
 struct Slope {
   double h = 0.0;
   double rate = 0.0;   ///< h_x f
-  double scale = 0.0;  ///< |h_x| |f|
+  double scale = 0.0;  ///< of the rate
 
   bool is_tangent() const { return std::abs(rate) <= tangent_contact * scale; }
 };
 
-Slope slope_at(const HybridSystem& system, int field, int event, const double* x, const double* par) {
-  const EventAt at = event_at(system, event, field, x, par);
-  return {at.h, at.rate(), at.sizes()};
+/// At the end of segment s.
+Slope slope_at(const HybridSystem& system, int field, int event, const Orbit& x, int s) {
+  const EventAt at = event_at(system, event, field, x.end(s), x.par.data());
+  return {at.h, at.rate(), at.rate_scale(state_moduli(x))};
 }
 
 double largest_value(const HybridSystem& system, const Orbit& x, int s, int event) {
@@ -180,7 +181,7 @@ class Search {
 
   void add_vanishing_impact(int s) {
     if (is_identity_jump(system_, index(s))) return;
-    if (slope_at(system_, index(s).field, index(s).event, x_.end(s), x_.par.data()).is_tangent())
+    if (slope_at(system_, index(s).field, index(s).event, x_, s).is_tangent())
       add({ContactPoint::impact, s, index(s).event, 1.0});
   }
 
@@ -198,7 +199,7 @@ class Search {
   }
 
   void add_on_section(int s, int event) {
-    const bool touches = slope_at(system_, index(s).field, event, x_.end(s), x_.par.data()).is_tangent();
+    const bool touches = slope_at(system_, index(s).field, event, x_, s).is_tangent();
     if (touches && index(s).event != event && ends_in_section(system_, settings_, s))
       add({ContactPoint::section, s, event, 1.0});
   }
@@ -220,7 +221,7 @@ std::optional<int> section_at_end(const Orbit& x, const HybridSystem& system, in
   const Eigen::Map<const Eigen::VectorXd> end(x.end(s), x.shape.dimension);
   for (int j = 1; j <= system.count(FunctionKind::event); ++j) {
     if (j == event) continue;
-    const Slope slope = slope_at(system, field, j, end.data(), x.par.data());
+    const Slope slope = slope_at(system, field, j, x, s);
     if (relative_event(system, x, j, end) <= touching && slope.rate < 0.0 && !slope.is_tangent()) return j;
   }
   return std::nullopt;

@@ -212,7 +212,7 @@ class LostContacts {
     constexpr double on_it = level::located;
     const CollocationRule rule(x.shape.collocation);
     // A contact touches its surface; which way it goes through there is rounding.
-    const auto falls = [](const EventAt& event) { return event.rate() < -on_it * event.sizes(); };
+    const auto falls = [&x](const EventAt& event) { return event.rate() < -on_it * event.rate_scale(state_moduli(x)); };
     const auto value = [&](double tau) {
       return system_.event(section.event, state_at(x, rule, 0, tau).data(), x.par.data());
     };

@@ -8,7 +8,6 @@
 #include "base/levels.hpp"
 #include "base/messages.hpp"
 #include "model/events.hpp"
-#include "model/scales.hpp"
 #include "orbit/admissibility.hpp"
 #include "resegment/contact_point.hpp"
 #include "resegment/signature_match.hpp"
@@ -454,9 +453,7 @@ bool is_contact_born(const CutList& cut, std::size_t k, const LabelledOrbit& sou
     throw UserError(fmt::format("{}: no orbit with a short contact with {} begins here: {}", source.name,
                                 event_name(system, before.index.event), why));
   };
-  // The fastest of all states, in their sizes, against what h makes of these.
-  const Eigen::VectorXd sizes = x.states.cwiseAbs().rowwise().maxCoeff().unaryExpr(&size_for_tolerance);
-  const double scale = met.gradient.cwiseAbs().dot(sizes) * met.f.cwiseQuotient(sizes).cwiseAbs().maxCoeff();
+  const double scale = met.rate_scale(state_moduli(x));
   if (met.rate() > tangent_contact * scale)
     refuse(
         fmt::format("beyond the surface {} leads back to it at once (h_x f = {:.4g}, not 0), so that orbits slide "
