@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "base/levels.hpp"
@@ -90,12 +91,13 @@ SegmentFlow integrate_segment(const HybridSystem& system, const IndexVector& ind
   of_flow.variational = options.variational && !is_by_tangents;
   CvodesFlow flow(system, index.field, x0, par, of_flow);
   flow.watch({index.event});
-  TangentFlow tangent(system, par, options.relative_tolerance);
-  MatrixXd jacobian = MatrixXd::Identity(x0.size(), x0.size());
+  std::optional<TangentFlow> tangent;
+  MatrixXd jacobian;
   if (is_by_tangents) {
-    tangent.use_sizes(options.sizes);
+    jacobian = MatrixXd::Identity(x0.size(), x0.size());
+    tangent.emplace(system, par, options.relative_tolerance).use_sizes(options.sizes);
     flow.on_piece(
-        [&](double from, double to) { return tangent.carry(jacobian, index.field, flow.dense_output(), from, to); });
+        [&](double from, double to) { return tangent->carry(jacobian, index.field, flow.dense_output(), from, to); });
   }
   const Progress progress = flow.advance(options.max_duration);
   if (progress == Progress::failed) return result_at(flow, FlowStatus::failed);

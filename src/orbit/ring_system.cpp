@@ -96,20 +96,18 @@ double RingSystem::unit_of_end(int s, int r) const {
   return units.empty() ? 1.0 : units[static_cast<std::size_t>(r)];
 }
 
-/// Nothing while a derivative is zero or not finite.
 void RingSystem::find_units(int s, const Orbit& x) const {
   std::vector<double>& units = units_[static_cast<std::size_t>(s)];
   const int count = end_conditions(s);
   if (!units.empty() || count == 0) return;
-  std::vector<double> values(static_cast<std::size_t>(count)), found;
+  std::vector<double> values(static_cast<std::size_t>(count));
   Eigen::MatrixXd by_state(count, dimension()), by_parameter(count, free_count());
   end_derivatives(s, x.end(s), x.par.data(), values.data(), by_state.data(), by_parameter.data());
   for (int r = 0; r < count; ++r) {
     const double largest = by_state.row(r).cwiseAbs().maxCoeff();
-    if (!(largest > 0.0) || !std::isfinite(largest)) return;
-    found.push_back(std::exp2(std::round(std::log2(largest))));
+    const bool has_size = largest > 0.0 && std::isfinite(largest);
+    units.push_back(has_size ? std::exp2(std::round(std::log2(largest))) : 1.0);
   }
-  units = std::move(found);
 }
 
 bool RingSystem::is_divided(int s, const Orbit& x) const {

@@ -121,7 +121,7 @@ class RingSystem : public DefiningSystem {
   /// May it be divided?
   bool is_contact(int s) const { return is_contact_segment(s) && end_conditions(s) == 1; }
   double* end_rows(int s, const Orbit& x, double* values, double* entries) const;
-  /// 1 where it is not known yet.
+  /// The divisor of row r: 1 before the first evaluation, and where the derivatives vanish there.
   double unit_of_end(int s, int r) const;
   void find_units(int s, const Orbit& x) const;
   void put(const std::vector<double>& columns, int row_count, int column_count, double factor, double*& entries) const;
