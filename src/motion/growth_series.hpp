@@ -27,7 +27,7 @@ namespace tchat {
 // time); it also forgets how the frame began. Its bar comes from weighted means of 8 blocks. It is taken where its bar
 // is less than a fifth of the other one, which does not happen by chance on chaotic motion.
 //
-// Where a motion comes to rest like a power of time, the rate is r + c / t, and its mean differs from r by about c / t.
+// A motion that decays like a power of time has the rate r + c / t, whose mean differs from r by about c / t.
 
 struct LyapunovSpectrum {
   Eigen::VectorXd exponents;  ///< descending; minus infinity for directions that are lost altogether
