@@ -128,7 +128,7 @@ class ContactSearch {
         surface_(system.dimension(), system.parameters()),
         x_(start.x),
         par_(start.par),
-        sizes_(sizes_from_ranges(sizes_at(system, start.contact.field, start.x, start.par))),
+        sizes_(sizes_at(system, start.contact.field, start.x, start.par).unaryExpr(&size_for_tolerance)),
         last_(start.durations.back()) {}
 
   GrazingOrbit run() {

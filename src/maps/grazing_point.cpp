@@ -72,7 +72,7 @@ MatrixXd short_segment(const HybridSystem& system, const IndexVector& v, const G
   const VectorXd sizes = sizes_of(system, at);
   const bool is_empty = std::abs(event.h) <= on_surfaces * event.scale(at.x.data(), sizes) &&
                         length_in_sizes(after - at.x, sizes) <= same_state;
-  if (!is_empty || !(std::abs(event.rate()) > no_minimum * event.sizes()))
+  if (!is_empty || !(std::abs(event.rate()) > no_minimum * event.rate_scale(sizes)))
     throw UserError(fmt::format(
         "{}: after an impact of velocity zero segment {} ({}) follows, which {}: the discontinuity map belongs to "
         "impacts after which the flow goes on as before, at once or after a short slip",

@@ -164,7 +164,8 @@ std::optional<CrossSection> own_section(const RunSettings& settings, const Hybri
     const int j = segment.index.event;
     if (j == no_function || j == point.event || !is_identity_jump(system, segment.index)) continue;
     const EventAt at = event_at(system, j, point.field, point.x.data(), point.par.data());
-    if (std::abs(at.h) > on_it * at.scale(point.x.data(), sizes) || std::abs(at.rate()) <= on_it * at.sizes()) continue;
+    if (std::abs(at.h) > on_it * at.scale(point.x.data(), sizes) || std::abs(at.rate()) <= on_it * at.rate_scale(sizes))
+      continue;
     const double cosine =
         at.gradient.dot(point.section_gradient) / (at.gradient.norm() * point.section_gradient.norm());
     if (1.0 - std::abs(cosine) > parallel) return CrossSection{j, 0};

@@ -80,12 +80,11 @@ VectorXd bump(Index count) {
 }
 
 /// Angles in turns of the points about the centre of their range, in the two states of largest extent, standardised.
-VectorXd turning_angles(const MatrixXd& points) {
+VectorXd turning_angles(const MatrixXd& points, const VectorXd& size) {
   const VectorXd low = points.rowwise().minCoeff();
   const VectorXd high = points.rowwise().maxCoeff();
   const VectorXd extent = high - low;
   const VectorXd centre = 0.5 * (low + high);
-  const VectorXd size = sizes_from_ranges(low.cwiseAbs().cwiseMax(high.cwiseAbs()));
   // The pair of states whose covariance matrix, each by its extent, is farthest from singular.
   Index best_a = 0, best_b = 1;
   double best = -1.0;
@@ -135,12 +134,11 @@ struct Return {
 };
 
 /// The first number of points after which a motion has come back, or nearly, and settles; 0 for none.
-Return repetition(const MatrixXd& points, const std::vector<Index>& angles) {
+Return repetition(const MatrixXd& points, const std::vector<Index>& angles, const VectorXd& size) {
   constexpr Index most = 64;
   // Simulations are known to so much; a torus comes back so close after so few points in a resonance alone.
   constexpr double rounding = level::tolerance, near = level::visible, settling = 1e-3;
   const Index quarter = points.cols() / 4;
-  const VectorXd size = sizes_from_ranges(points.cwiseAbs().rowwise().maxCoeff());
   for (Index q = 1; q <= std::min(most, quarter); ++q) {
     const auto largest = [&](Index begin, Index end) {
       double distance = 0.0;
@@ -227,7 +225,9 @@ class CurveFit {
     for (int step = 0; step < refinements; ++step) improve(points, sequence, scale, harmonics, step + 1 < refinements);
   }
 
-  InvariantCurve curve(const PointSequence& sequence) const { return {rotation, sequence.winding(), series}; }
+  InvariantCurve curve(const PointSequence& sequence, const VectorXd& scale) const {
+    return {rotation, sequence.winding(), series, scale};
+  }
 
   double rotation;
   TrigonometricSeries series;
@@ -243,7 +243,7 @@ class CurveFit {
     const Index count = points.cols();
     const VectorXd phases = phases_of(rotation, count);
     series = TrigonometricSeries::fitted(sequence.periodic(phases), phases, harmonics);
-    const InvariantCurve now = curve(sequence);
+    const InvariantCurve now = curve(sequence, scale);
     double along = 0.0, norm = 0.0;
     largest = total = 0.0;
     for (Index k = 0; k < count; ++k) {
@@ -274,15 +274,15 @@ CurveFit best_fit(const MatrixXd& points, const PointSequence& sequence, const V
   return best;
 }
 
-VectorXd extents(const MatrixXd& points, const std::vector<Index>& angles) {
+VectorXd extents(const MatrixXd& points, const std::vector<Index>& angles, const VectorXd& sizes) {
   VectorXd extent = points.rowwise().maxCoeff() - points.rowwise().minCoeff();
   for (const Index i : angles) extent(i) = full_turn;
-  return sizes_from_ranges(extent);
+  return sizes_from_ranges(extent, sizes);
 }
 
 }  // namespace
 
-InvariantCurve::InvariantCurve(double rotation, VectorXd winding, TrigonometricSeries periodic)
+InvariantCurve::InvariantCurve(double rotation, VectorXd winding, TrigonometricSeries periodic, const VectorXd& sizes)
     : rotation_(rotation), winding_(std::move(winding)), periodic_(std::move(periodic)) {
   const Index samples = std::max<Index>(64, 8 * periodic_.harmonics());
   VectorXd low = at(0.0), high = low;
@@ -290,7 +290,7 @@ InvariantCurve::InvariantCurve(double rotation, VectorXd winding, TrigonometricS
     const VectorXd x = at(static_cast<double>(k) / static_cast<double>(samples));
     low = low.cwiseMin(x), high = high.cwiseMax(x);
   }
-  extent_ = high - low;
+  extent_ = sizes_from_ranges(high - low, sizes);
   for (Index i = 0; i < dimension(); ++i)
     if (is_angle(i)) extent_(i) = full_turn;
 }
@@ -315,16 +315,18 @@ FittedCurve fit_invariant_curve(const MatrixXd& points, const CurveSettings& set
         fmt::format("{}: {} points of a section are too few for an invariant curve; simulate until there are "
                     "{} at least (1000 and more are better)",
                     source, points.cols(), fewest_points));
-  if (const Return back = repetition(points, settings.angles); back.after > 0)
+  VectorXd sizes = settings.sizes;
+  if (sizes.size() == 0) sizes.setConstant(points.rows(), points.cwiseAbs().maxCoeff());
+  if (const Return back = repetition(points, settings.angles, sizes); back.after > 0)
     throw UserError(
         fmt::format("{}: the motion {} periodic orbit: every {} repeats, to {:.1e} at the end; there is no torus here: "
                     "follow that orbit (`tchat simulate --dat`), or choose parameters or a start where the motion does "
                     "not repeat itself",
                     source, back.last < 1e-3 * back.first ? "settles on a" : "is a",
                     back.after == 1 ? std::string("point") : fmt::format("{} points it", back.after), back.last));
-  const VectorXd scale = extents(points, settings.angles);
-  const VectorXd angles =
-      settings.angles.empty() ? turning_angles(points) : VectorXd(points.row(settings.angles.front()) / full_turn);
+  const VectorXd scale = extents(points, settings.angles, sizes);
+  const VectorXd angles = settings.angles.empty() ? turning_angles(points, sizes)
+                                                  : VectorXd(points.row(settings.angles.front()) / full_turn);
   const VectorXd steps = lifted_steps(angles);
   const double turned = phase_fraction(bump(steps.size()).dot(steps));
   // Without an angle the curve has two directions: the one in which a return is less than half a turn.
@@ -348,13 +350,11 @@ FittedCurve fit_invariant_curve(const MatrixXd& points, const CurveSettings& set
         "more points or with a smaller tolerance, or take another section: on a torus every "
         "trajectory must cross it at an angle; or the motion is chaotic (`tchat simulate --lyapunov` tells)",
         count, fit.largest, fit.series.harmonics(), fit.rotation));
-  return {fit.curve(sequence), fit.largest, fit.rotation_error};
+  return {fit.curve(sequence, scale), fit.largest, fit.rotation_error};
 }
 
 CurveProjection::CurveProjection(const InvariantCurve& curve) : curve_(curve), kind_(Kind::nearest) {
-  const double largest = curve_.extent().maxCoeff();
-  // A state that hardly varies must not decide where the others lie.
-  weights_ = curve_.extent().cwiseMax(0.1 * largest).cwiseAbs2().cwiseInverse();
+  weights_ = curve_.extent().cwiseAbs2().cwiseInverse();
   const Index count = std::max<Index>(128, 8 * curve_.harmonics());
   samples_.resize(curve_.dimension(), count);
   for (Index k = 0; k < count; ++k) samples_.col(k) = curve_.at(static_cast<double>(k) / static_cast<double>(count));

@@ -54,8 +54,8 @@ class TrigonometricSeries {
 
 class InvariantCurve {
  public:
-  /// `periodic`: u - w phi; `winding`: w, n.
-  InvariantCurve(double rotation, Eigen::VectorXd winding, TrigonometricSeries periodic);
+  /// `periodic`: u - w phi; `winding`: w, n; `sizes`: of the states of the motion, n.
+  InvariantCurve(double rotation, Eigen::VectorXd winding, TrigonometricSeries periodic, const Eigen::VectorXd& sizes);
 
   double rotation() const { return rotation_; }  ///< rho, in (0, 1)
   Eigen::Index dimension() const { return periodic_.rows(); }
@@ -68,7 +68,7 @@ class InvariantCurve {
   Eigen::VectorXd derivative(double phi, int order = 1) const;
   /// x - y, in angles the way round that is shorter.
   Eigen::VectorXd difference(const Eigen::VectorXd& x, const Eigen::VectorXd& y) const;
-  /// Range of each state along the curve; 2 pi for angles; n.
+  /// Range of each state along the curve, of one that does not move its size; 2 pi for angles; n.
   const Eigen::VectorXd& extent() const { return extent_; }
 
  private:
@@ -80,6 +80,7 @@ class InvariantCurve {
 
 struct CurveSettings {
   std::vector<Eigen::Index> angles;  ///< states, from 0, that count modulo 2 pi
+  Eigen::VectorXd sizes;             ///< of the states of the motion, n; none: all alike
   int max_harmonics = 256;
   double tolerance = level::located;  ///< of the fit, relative to the extent of the curve
 };

@@ -138,14 +138,14 @@ MapModel periodic_model(const MapRequest& request, const MapContext& context, co
   if (model.section && model.section->event > 0) {
     const EventAt at =
         event_at(system, model.section->event, model.point.field, model.point.x.data(), model.point.par.data());
-    if (std::abs(at.rate()) > on_p * at.sizes() &&
-        std::abs(at.h) >
-            on_p * at.scale(model.point.x.data(), sizes_at(system, model.point.field, model.point.x, model.point.par)))
+    const VectorXd sizes = sizes_at(system, model.point.field, model.point.x, model.point.par);
+    const double rate = on_p * at.rate_scale(sizes);
+    if (std::abs(at.rate()) > rate && std::abs(at.h) > on_p * at.scale(model.point.x.data(), sizes))
       throw UserError(
           fmt::format("--section {}: event function {} is {:.6g} at the grazing point x* = {}: the section must "
                       "pass through it; name a state instead, whose value at x* makes the section",
                       *context.section, model.section->event, at.h, numbers(model.point.x)));
-    if (at.rate() > on_p * at.sizes())
+    if (at.rate() > rate)
       throw UserError(
           fmt::format("--section {}: event function {} rises at the grazing point x* = {}; sections are those "
                       "where functions fall: name a state instead",
@@ -242,7 +242,7 @@ bool lie_on_p(const HybridSystem& system, const Eigen::MatrixXd& points, int fie
   for (Index k = 0; k < points.cols(); k += std::max<Index>(1, points.cols() / 50)) {
     const VectorXd x = points.col(k);
     const EventAt at = event_at(system, wall, field, x.data(), par.data());
-    if (std::abs(at.rate()) > on_p * at.sizes()) return false;
+    if (std::abs(at.rate()) > on_p * at.rate_scale(sizes_at(system, field, x, par))) return false;
   }
   return true;
 }
@@ -266,6 +266,14 @@ std::vector<Index> angles_of(const HybridSystem& system, const Eigen::MatrixXd& 
   return angles;
 }
 
+CurveSettings curve_settings(const HybridSystem& system, const Eigen::MatrixXd& points, int field,
+                             const ParameterVector& par) {
+  CurveSettings settings;
+  settings.angles = angles_of(system, points, par);
+  settings.sizes = points.cwiseAbs().rowwise().maxCoeff().cwiseMax(sizes_at(system, field, points.col(0), par));
+  return settings;
+}
+
 TorusCurve curve_of_points(const MapRequest& request, const MapContext& context, const HybridSystem& system,
                            int named) {
   const std::vector<SectionPoints> all = read_section_points(system, request.source, named);
@@ -281,8 +289,7 @@ TorusCurve curve_of_points(const MapRequest& request, const MapContext& context,
                     "which of them make the section",
                     request.source, wall, system.function_name(FunctionKind::event, wall)));
   const SectionPoints& points = is_p ? *on : all.front();
-  CurveSettings settings;
-  settings.angles = angles_of(system, points.states, par);
+  const CurveSettings settings = curve_settings(system, points.states, points.field, par);
   const FittedCurve fit = fit_invariant_curve(points.states, settings, request.source);
   const std::string text = fmt::format(
       "Invariant curve of {} points on {}: rotation number {:.12g} +- {:.1e}, {} harmonics, {:.1e} off at most",
@@ -306,8 +313,7 @@ TorusCurve curve_on_p(const HybridSystem& system, const TorusLabel& torus, int f
                       const std::vector<int>& along) {
   constexpr int points_on_curve = 4000;
   const Eigen::MatrixXd points = torus.points_on_p(wall, field, points_on_curve);
-  CurveSettings settings;
-  settings.angles = angles_of(system, points, torus.par());
+  const CurveSettings settings = curve_settings(system, points, field, torus.par());
   const FittedCurve fit = fit_invariant_curve(points, settings, torus.source());
   const std::string text = fmt::format(
       "Invariant curve of {}, {} points of its {} orbits on P: rotation number there {:.12g}, {} harmonics, {:.1e} off "

@@ -261,8 +261,9 @@ int simulate_torus(const SimulationRequest& request, const std::string& torus_na
   const auto [points, angles] =
       with_angles(system, one_return, points_of_returns(motion, one_return, request.name), start.par);
   refuse_growth(system, points, request.name);
-  const FittedCurve fitted =
-      fit_invariant_curve(points, {.angles = angles, .max_harmonics = 200, .tolerance = fit_tolerance}, request.name);
+  const FittedCurve fitted = fit_invariant_curve(
+      points, {.angles = angles, .sizes = simulation.sizes(), .max_harmonics = 200, .tolerance = fit_tolerance},
+      request.name);
 
   RunSettings settings = torus_settings(constants, free_parameter(request, constants, system));
   const int most = (max_torus_segments / static_cast<int>(one_return.size()) - 1) / 2;

@@ -256,7 +256,7 @@ QuadraticMap smooth_return(const HybridSystem& system, const Signature& path, co
     if (flow.status != FlowStatus::event_reached)
       throw ComputationError(fmt::format("segment {} of the return to the section: {}", s + 1, flow.message));
     const EventAt met = event_at(system, path[s].event, path[s].field, flow.end_state.data(), par.data());
-    if (!(std::abs(met.rate()) > level::negligible * met.sizes()))
+    if (!(std::abs(met.rate()) > level::negligible * met.rate_scale(sizes_at(system, path[s].field, start, par))))
       throw ComputationError(
           fmt::format("segment {} of the return to the section meets {} tangentially, the map has "
                       "no derivative there",
@@ -302,9 +302,10 @@ int crossings_before(const SuspendedSystem& suspended, const IndexVector& index,
 
 PeriodicReturn::PeriodicReturn(std::shared_ptr<const SuspendedSystem> suspended, const GrazingTurn& turn, int section,
                                int order, const FlowOptions& options)
-    : suspended_(std::move(suspended)), extent_(sizes_from_ranges(turn.extent)) {
+    : suspended_(std::move(suspended)) {
   const HybridSystem& system = suspended_->system();
   const VectorXd start = suspended_->suspended(turn.x, turn.par);
+  extent_ = sizes_from_ranges(turn.extent, sizes_at(suspended_->base(), suspended_->field(), turn.x, turn.par));
   FlowOptions waiting = options;
   for (const double duration : turn.durations) waiting.max_duration = std::max(waiting.max_duration, 2.0 * duration);
   VectorXd last = start;

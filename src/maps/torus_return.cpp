@@ -106,7 +106,7 @@ TorusReturn::TorusReturn(std::shared_ptr<const SuspendedSystem> suspended, Invar
       curve_(std::move(curve)),
       projection_(std::move(projection)),
       par_(par),
-      scale_(sizes_from_ranges(curve_.extent())) {
+      scale_(curve_.extent()) {
   parameters_along_ = suspended_->suspended(curve_.at(0.0), par).tail(suspended_->system().dimension() - dimension());
   // As many as the curve has harmonics is a good guess.
   const int first_count = std::clamp(2 * (curve_.harmonics() / 2), 64, settings.most_nodes);
@@ -343,11 +343,11 @@ Orbit orbit_of_label(const HybridSystem& system, const LabelledSolution& solutio
       .orbit;
 }
 
-InvariantCurve curve_through(const MatrixXd& values, double rotation, const VectorXd& winding) {
+InvariantCurve curve_through(const MatrixXd& values, double rotation, const VectorXd& winding, const VectorXd& sizes) {
   MatrixXd periodic = values;
   for (Index l = 0; l < values.cols(); ++l)
     periodic.col(l) -= static_cast<double>(l) / static_cast<double>(values.cols()) * winding;
-  return {phase_fraction(rotation), winding, TrigonometricSeries::through(periodic)};
+  return {phase_fraction(rotation), winding, TrigonometricSeries::through(periodic), sizes};
 }
 
 }  // namespace
@@ -362,6 +362,7 @@ TorusLabel::TorusLabel(const HybridSystem& system, const LabelledSolution& solut
              torus_winding(system, settings.signature(), orbit_)) {
   const int m = torus_.segments_per_return();
   const TorusWinding& winding = torus_.winding();
+  const VectorXd sizes = orbit_.states.cwiseAbs().rowwise().maxCoeff();
   for (int s = 0; s < m; ++s) {
     const IndexVector& index = settings_.segments[static_cast<std::size_t>(s)].index;
     if (std::any_of(sections_.begin(), sections_.end(), [&](const Section& of) { return of.event == index.event; }))
@@ -373,7 +374,7 @@ TorusLabel::TorusLabel(const HybridSystem& system, const LabelledSolution& solut
       if (winding.curve(a) == 0.0 && winding.returns(a) != 0.0)
         values.row(a).array() -= full_turn * std::floor(values.row(a).mean() / full_turn);
     sections_.push_back(
-        {index.event, index.field, index.jump, curve_through(values, rotation(), winding.curve), values});
+        {index.event, index.field, index.jump, curve_through(values, rotation(), winding.curve, sizes), values});
   }
 }
 

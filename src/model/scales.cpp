@@ -185,9 +185,10 @@ double size_for_tolerance(double size) {
   return size > 0.0 ? std::clamp(size, least, 1.0 / least) : 1.0;
 }
 
-Eigen::VectorXd sizes_from_ranges(const Eigen::VectorXd& ranges) {
-  constexpr double hardly = 1e-3;  // of the largest range
-  return ranges.cwiseMax(std::max(hardly * ranges.maxCoeff(), std::numeric_limits<double>::min()));
+Eigen::VectorXd sizes_from_ranges(const Eigen::VectorXd& ranges, const Eigen::VectorXd& sizes) {
+  return ranges.binaryExpr(sizes, [](double range, double size) {
+    return range > level::located * size ? range : size_for_tolerance(size);
+  });
 }
 
 Eigen::VectorXd sizes_of_differences(const Eigen::VectorXd& low, const Eigen::VectorXd& high,

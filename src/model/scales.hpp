@@ -77,8 +77,8 @@ bool are_usual(const Eigen::VectorXd& sizes);
 /// this size: it, but not nothing; 1 where the size is 0, not known.
 double size_for_tolerance(double size);
 
-/// Sizes of differences of states that range so far: one that hardly moves is compared on the scale of the others.
-Eigen::VectorXd sizes_from_ranges(const Eigen::VectorXd& ranges);
+/// Sizes of differences of states that range so far: the range, or the size (0: not known) of one that hardly moves.
+Eigen::VectorXd sizes_from_ranges(const Eigen::VectorXd& ranges, const Eigen::VectorXd& sizes);
 
 /// Sizes of differences of states of a motion between `low` and `high`: of each its range and 1e-3 of its largest
 /// value; of one that is nothing but rounding of zero 1e-3 of the largest range; infinite of one that is left out.

@@ -245,14 +245,15 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double tangential = level::rounding;  // |h_x f| / (|h_x| |f|): rounding
+constexpr double tangential = level::rounding;  // h_x f beside its scale
 constexpr double endless = 1e300;
 constexpr double far_off = 100.0;  // from where the motion has been, in the largest size of a state
 
-/// V at the end of a segment, onto the surface of its event. False where that is met tangentially.
-bool project_on_event(const HybridSystem& system, const SimulatedSegment& segment, const VectorXd& par, MatrixXd& v) {
+/// V at the end of a segment, onto the surface of its event. False where that is met tangentially. `sizes`: of states.
+bool project_on_event(const HybridSystem& system, const SimulatedSegment& segment, const VectorXd& sizes,
+                      const VectorXd& par, MatrixXd& v) {
   const EventAt at = event_at(system, segment.index.event, segment.mode.field(), segment.end.data(), par.data());
-  if (!(std::abs(at.rate()) > tangential * at.sizes())) return false;
+  if (!(std::abs(at.rate()) > tangential * at.rate_scale(sizes))) return false;
   v = at.project(v);
   return v.allFinite();
 }
@@ -290,7 +291,7 @@ SimulatedTurn simulate_turn(const HybridSimulation& at, const VectorXd& y, const
     }
     if (!with_derivative) continue;
     tangent.use_sizes(simulation.sizes());
-    turn.is_smooth = turn.is_smooth && project_on_event(system, segment, par, v);
+    turn.is_smooth = turn.is_smooth && project_on_event(system, segment, simulation.sizes(), par, v);
     if (!turn.is_smooth) {
       turn.fault = fmt::format("segment {} has no finite derivative", s + 1);
       return turn;
