@@ -113,7 +113,7 @@ class EquilibriumEquations final : public SingularEquations {
   double find_step(double y, double s) override {
     double excess = 0.0;
     step_ = with_entry(solve(-forms_->field(), excess), 0.0) + y * v_ + s * u_;
-    return step_.head(q_.size()).lpNorm<Eigen::Infinity>();
+    return step_.head(q_.size()).lpNorm<Eigen::Infinity>() / (1.0 + x_.states.lpNorm<Eigen::Infinity>());
   }
   void move(Orbit& x) const override {
     x.states.topRows(q_.size()).colwise() += step_.head(q_.size());

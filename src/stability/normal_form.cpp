@@ -53,7 +53,7 @@ std::optional<BranchingForm> branching_form(SingularEquations& equations, Orbit&
     if (before) return with_errors_of_place(form_of(*g, equations.cubic()), *before, level::rounding_of_sums * size);
     const Eigen::Vector2d change = change_to_centre(*g);
     const double length =
-        std::max(equations.find_step(change(0), change(1)) / size, std::abs(change(1)) / equations.parameter_size(x));
+        std::max(equations.find_step(change(0), change(1)), std::abs(change(1)) / equations.parameter_size(x));
     if (!(length < farthest)) return std::nullopt;
     const bool is_rounding = last < level::stalled && length > 0.5 * last;  // that the equations may amplify
     if (length < level::converged || is_rounding) before = form_of(*g, equations.cubic());
@@ -134,7 +134,8 @@ class OrbitEquations final : public SingularEquations {
     step_.states += y * vector().states + s * along_parameter_.states;
     step_.durations += y * vector().durations + s * along_parameter_.durations;
     step_.globals = s * along_parameter_.globals;
-    return std::max(step_.states.lpNorm<Eigen::Infinity>(), step_.durations.lpNorm<Eigen::Infinity>());
+    return std::max(step_.states.lpNorm<Eigen::Infinity>() / (1.0 + x_->states.lpNorm<Eigen::Infinity>()),
+                    step_.durations.lpNorm<Eigen::Infinity>() / std::abs(x_->period()));
   }
   void move(Orbit& x) const override { advance(x, 1.0, step_, system_.free_parameters()); }
   double parameter_size(const Orbit& x) const override { return tchat::parameter_size(system_, x, 0); }

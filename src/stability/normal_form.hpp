@@ -56,7 +56,8 @@ class SingularEquations {
   virtual std::optional<ReducedEquation> reduce(const Orbit& x) = 0;
   /// c at that point, with the errors of sums.
   virtual Coefficient cubic() = 0;
-  /// Newton's step from that point to F + zeta b = 0 with these changes of y and p: the largest change in u.
+  /// Newton's step from that point to F + zeta b = 0 with these changes of y and p: the largest change in u, of a
+  /// state beside 1 + |x|, of a duration beside the period.
   virtual double find_step(double y, double s) = 0;
   /// That step; x is the orbit of reduce().
   virtual void move(Orbit& x) const = 0;
