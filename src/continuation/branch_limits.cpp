@@ -121,18 +121,19 @@ std::string lost_multiplier(const OrbitCondition* condition, const PointData& da
 }
 
 std::string undetermined_duration(const DefiningSystem& system, const Orbit& x) {
-  StackVector f(x.shape.dimension);
-  const double sizes = 1.0 + largest_state(x);
+  StackVector f(x.shape.dimension), sizes(x.shape.dimension);
+  sizes = x.states.cwiseAbs().rowwise().maxCoeff();
+  sizes = sizes.cwiseMax(level::same * sizes.maxCoeff());
   const double period = x.period();
   for (int s = 0; s < x.shape.segments; ++s) {
     if (lasts_no_time(x, s, period)) continue;
     system.system().value(FunctionKind::field, system.signature()[static_cast<std::size_t>(s)].field, x.end(s),
                           x.par.data(), f.data());
-    const double moved = f.cwiseAbs().maxCoeff() * std::abs(x.duration(s));
-    if (moved < level::negligible * sizes)
+    const double moved = f.cwiseQuotient(sizes).cwiseAbs().maxCoeff() * std::abs(x.duration(s));
+    if (moved < level::negligible)
       return fmt::format(
-          "segment {} ends at rest to within rounding (|f| T = {:.1e}), so that its duration {:.6g} is not "
-          "determined",
+          "segment {} ends at rest to within rounding (|f| T is {:.1e} of the states), so that its duration {:.6g} is "
+          "not determined",
           s + 1, moved, x.duration(s));
   }
   return "";

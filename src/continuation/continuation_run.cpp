@@ -316,7 +316,7 @@ void ContinuationRun::count_iterations(const PathPoint& from, Candidate& to) {
   iterations_ = is_doubtful_ ? tried_along_tangent(from, to) : range.most;
 }
 
-/// The step again, from the tangent, for its number of iterations.
+/// The step again, from the tangent, for its number of iterations; where that fails, those of the step that was made.
 int ContinuationRun::tried_along_tangent(const PathPoint& from, Candidate& to) {
   PathPoint trial = to.point;
   const NewtonResult newton = follower_.step_along_tangent(from, to.ds, trial);
@@ -324,7 +324,7 @@ int ContinuationRun::tried_along_tangent(const PathPoint& from, Candidate& to) {
     to.point.newton_constant = trial.newton_constant;
   else
     follower_.linearize_at(to.point);
-  return newton.converged() ? newton.iterations : settings_.step.max_newton;
+  return newton.converged() ? newton.iterations : newton_.iterations;
 }
 
 /// Where the period has become long, or steps short, a branch that passes infinity ends without a further approach.
