@@ -326,6 +326,12 @@ double PathFollower::polish(const PathPoint& from, double expected, Orbit& x) {
   return moved;
 }
 
+void PathFollower::set_tangent(PathPoint& point, const OrbitVector& tangent) {
+  point.tangent = tangent;
+  normalise(point.orbit, point.tangent, point.dual);
+  factors_known_ = false;
+}
+
 IterationRange PathFollower::iterations_along_tangent(const PathPoint& from, double ds, PathPoint& to, bool exactly) {
   constexpr double fast = 1e-2;         // a contraction of Newton's method that is far from none
   constexpr double of_measured = 1.5;   // error of the second correction, as a factor

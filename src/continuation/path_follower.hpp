@@ -126,6 +126,9 @@ class PathFollower {
   /// The same, always from the tangent.
   NewtonResult step_along_tangent(const PathPoint& from, double ds, PathPoint& to);
 
+  /// Gives a point another tangent, on the same mesh, of any length; factors that are at hand are not used again.
+  void set_tangent(PathPoint& point, const OrbitVector& tangent);
+
   /// How many iterations Newton's method takes for this step when it starts on the tangent, whatever predictor the step
   /// had. condensed() must be the linearisation at `to`; a chord iteration from the tangent with its factors tells it
   /// `exactly` and to.newton_constant, else it is estimated by that of `from`.

@@ -326,10 +326,37 @@ std::optional<Candidate> SpecialPointSearch::farther_step(const PathPoint& here,
   return std::nullopt;
 }
 
+bool SpecialPointSearch::has_tangent(double length) const {
+  constexpr double beside = 1e-3;  // share of the step
+  return std::none_of(singular_.begin(), singular_.end(),
+                      [&](double singular) { return std::abs(singular - length) <= beside * std::abs(whole_->ds); });
+}
+
+/// Where the equations are singular, as on a curve of branch points that passes a conservative system, what they have
+/// as a tangent is rounding: between points with about one direction the branch has about that direction.
+NewtonResult SpecialPointSearch::step_within(const PathPoint& here, double length, PathPoint& trial) {
+  constexpr double most_turn = 2.0;  // beside that of the whole step
+  const NewtonResult result = follower_.step(here, length, trial);
+  if (!result.converged()) return result;
+  const OrbitVector& beyond = whole_->point.tangent;
+  const double turn = 1.0 - dot(here.dual, beyond);
+  if (turn > 1.0 - same_direction || !(1.0 - dot(here.dual, trial.tangent) > most_turn * turn)) return result;
+  const double share = length / whole_->ds;
+  OrbitVector between = here.tangent;
+  between.states += share * (beyond.states - here.tangent.states);
+  between.durations += share * (beyond.durations - here.tangent.durations);
+  between.globals += share * (beyond.globals - here.tangent.globals);
+  follower_.set_tangent(trial, between);
+  singular_.push_back(length);
+  return result;
+}
+
 /// `next` becomes the first zero, or stays the end of the step when there is none; the follower holds its
 /// linearisation.
 std::optional<SpecialPoint> SpecialPointSearch::advance_to_first_zero(const PathPoint& from, Candidate& next,
                                                                       NewtonResult& newton, const Candidate& whole) {
+  whole_ = &whole;
+  singular_.clear();
   PathPoint here = from;  // with the end of the step, between which and its start trial points are predicted
   here.trail.add(whole.point, system_.free_parameters());
   PathPoint trial = next.point;
@@ -362,7 +389,7 @@ std::optional<SpecialPointSearch::Cut> SpecialPointSearch::first_in(const PathPo
   std::vector<Zero> zeros = find_zeros(here, trial, length, end);
   while (!zeros.empty()) {
     const Zero first = first_sharp_zero(here, trial, length, zeros, end);
-    const NewtonResult result = follower_.step(here, first.ds, trial);
+    const NewtonResult result = step_within(here, first.ds, trial);
     if (!result.converged()) {
       searches_[first.test] = Search::failed;
       break;
@@ -412,7 +439,7 @@ SpecialPointSearch::Zero SpecialPointSearch::first_sharp_zero(const PathPoint& h
   const Zero first = *std::min_element(zeros.begin(), zeros.end(),
                                        [](const Zero& a, const Zero& b) { return std::abs(a.ds) < std::abs(b.ds); });
   const auto data_at = [&](const Zero& zero) -> std::optional<PointData> {
-    if (!follower_.step(here, zero.ds, trial).converged()) return std::nullopt;
+    if (!step_within(here, zero.ds, trial).converged()) return std::nullopt;
     return evaluate(trial);
   };
   for (const Zero& other : zeros) {
@@ -532,7 +559,7 @@ SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const Path
   PathPoint start = here;
   const auto evaluate_at = [&](double length) {
     const bool at_start = length == 0.0;
-    if (!(at_start ? follower_.linearize_at(here) : follower_.step(here, length, trial).converged())) return false;
+    if (!(at_start ? follower_.linearize_at(here) : step_within(here, length, trial).converged())) return false;
     PathPoint& there = at_start ? start : trial;
     const PointData data = evaluate(there);
     found = data.tests[test];
@@ -560,10 +587,11 @@ SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const Path
   // No level of rounding: where a function is flat, it is small far from its zero.
   const LocatedZero zero = locate_zero_surely(at, bracket, settings_.tolerance, 0.0, settings_.max_evaluations);
   const bool is_jump = zero.status == ZeroSearch::jump;
-  const Search search = zero.converged() || (is_jump && tests_[test]->is_switch()) ? Search::located
-                        : is_jump && genuine                                       ? Search::jump
-                        : is_jump                                                  ? Search::no_special_point
-                                                                                   : Search::failed;
+  const Search search = tests_[test]->is_of_tangent() && !has_tangent(zero.ds)       ? Search::failed
+                        : zero.converged() || (is_jump && tests_[test]->is_switch()) ? Search::located
+                        : is_jump && genuine                                         ? Search::jump
+                        : is_jump                                                    ? Search::no_special_point
+                                                                                     : Search::failed;
   return {test, zero.ds, search};
 }
 
@@ -576,7 +604,7 @@ SpecialPointSearch::Search SpecialPointSearch::zero_at_start(std::size_t test) c
 }
 
 /// The functions that vanish where one has its zero, evaluated as `there`: whose own zeros are at the same place as far
-/// as can be told, or, where these were not located, that have become small.
+/// as can be told, or, where these were not located, that have become small or depend on a tangent that is not there.
 std::vector<std::size_t> SpecialPointSearch::vanishing_with(const Zero& first, const std::vector<Zero>& zeros,
                                                             const PointData& there, double length,
                                                             const PointData& end) const {
@@ -586,7 +614,8 @@ std::vector<std::size_t> SpecialPointSearch::vanishing_with(const Zero& first, c
     const auto zero = std::find_if(zeros.begin(), zeros.end(), [i](const Zero& z) { return z.test == i; });
     const std::optional<double>& value = there.tests[i].value;
     const bool small = value && std::abs(*value) <= together * std::abs(*end.tests[i].value);
-    const bool same = zero == zeros.end() ? small && searches_[i] == Search::failed
+    const bool is_open = small || (tests_[i]->is_of_tangent() && !has_tangent(first.ds));
+    const bool same = zero == zeros.end() ? is_open && searches_[i] == Search::failed
                                           : std::abs(zero->ds - first.ds) <= same_place ||
                                                 (small && is_flat(*zero, there, zero->ds - first.ds, length, end));
     if (same) group.push_back(i);

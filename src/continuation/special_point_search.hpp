@@ -99,6 +99,8 @@ class SpecialPointSearch {
   std::optional<SpecialPoint> advance_to_first_zero(const PathPoint& from, Candidate& next, NewtonResult& newton,
                                                     const Candidate& whole);
   std::optional<Cut> first_in(const PathPoint& here, PathPoint& trial, const Candidate& step);
+  bool has_tangent(double length) const;
+  NewtonResult step_within(const PathPoint& here, double length, PathPoint& trial);
   void keep_rest(const Candidate& whole, const PathPoint& cut);
   void report_start(const PointData& next, const Reports& reports) const;
   void report_lost(const PointData& next, const Reports& reports) const;
@@ -119,6 +121,8 @@ class SpecialPointSearch {
   void remember(const PointData& data, double ds);
 
   PathFollower& follower_;
+  const Candidate* whole_ = nullptr;  // the step on which a zero is looked for
+  std::vector<double> singular_;      // lengths of trial steps on it to points without a tangent
   const DefiningSystem& system_;
   std::vector<std::unique_ptr<TestFunction>> tests_;
   LocationSettings settings_;

@@ -379,7 +379,8 @@ class Table {
       const bool excused = is_inadmissible && std::erase(defects, Defect::event) > 0;
       if (s == 0 && are_multipliers_wrong(check, tolerance_)) defects.push_back(Defect::multipliers);
       if (s == 0 && are_critical_ones_wrong(check, tolerance_)) defects.push_back(Defect::critical);
-      const bool is_undecided = defects == std::vector{Defect::undecided};
+      const bool is_undecided =
+          defects == std::vector{Defect::undecided} || defects == std::vector{Defect::not_integrated};
       verdict.is_right = verdict.is_right && (defects.empty() || is_undecided);
       verdict.is_undecided = verdict.is_undecided || is_undecided;
       verdict.is_inadmissible = verdict.is_inadmissible || excused;
@@ -436,10 +437,11 @@ struct Verdicts {
 std::string summary(const std::string& path, const Verdicts& of, double tolerance) {
   const std::string stored =
       of.inadmissible > 0 ? fmt::format(" ({} inadmissible, as the run had found)", of.inadmissible) : "";
-  const std::string open = of.undecided.empty()
-                               ? ""
-                               : fmt::format("{} of {} labels undecided, as errors grow too much along them: {}",
-                                             of.undecided.size(), of.all, list_of(of.undecided));
+  const std::string open =
+      of.undecided.empty()
+          ? ""
+          : fmt::format("{} of {} labels undecided, as errors grow too much along them or integration failed: {}",
+                        of.undecided.size(), of.all, list_of(of.undecided));
   if (!of.wrong.empty())
     return fmt::format("{}: {} of {} labels beyond the tolerance {:g}{}: {}{}{}\n", path, of.wrong.size(), of.all,
                        tolerance, stored, list_of(of.wrong), open.empty() ? "" : "; ", open);

@@ -135,11 +135,14 @@ class ColumnComparison {
     return at;
   }
 
-  /// Differences that are values of an oscillation by chance are about as large as its amplitude by the step.
+  /// Differences that are values of an oscillation by chance are about as large as its amplitude by the step, whatever
+  /// constant the function has beside it.
   bool agree(const ExtrapolatedDifference& a, const ExtrapolatedDifference& b, int row) const {
     const double larger = std::max(std::abs(a.value(row)), std::abs(b.value(row)));
-    const double of_amplitude = level::differences * std::abs(along_(step_)(row) / step_);
-    return std::abs(a.value(row) - b.value(row)) <= same_digits * larger + of_amplitude;
+    const double here = along_(0.0)(row);
+    const double amplitude = std::max(std::abs(along_(step_)(row) - here), std::abs(along_(-step_)(row) - here));
+    const double of_amplitude = level::differences * amplitude + level::rounding_of_sums * std::abs(here);
+    return std::abs(a.value(row) - b.value(row)) <= same_digits * larger + of_amplitude / step_;
   }
 
   const ExtrapolatedDifference& with_shorter_step(std::size_t k) {

@@ -45,10 +45,14 @@ class EventAlongSegment {
   }
 
   /// The minimum near sigma of interval j, by the flow from the interval's left mesh point (by the polynomial where
-  /// there is no flow); the small rest of h_x f there is removed by one Newton step on the time.
+  /// there is no flow, or it has gone elsewhere, as near a saddle it does from rounding alone); the small rest of h_x f
+  /// there is removed by one Newton step on the time.
   EventMinimum polished(int j, double sigma) const {
+    constexpr double elsewhere = 0.1;  // of the largest states
     const double time = sigma * length(j) * x_.duration(s_);
-    Vector u = flow(x_.node(s_, j * x_.shape.collocation), time).value_or(nodes(j) * basis_at(sigma).values);
+    Vector u = nodes(j) * basis_at(sigma).values;
+    const std::optional<Vector> flown = flow(x_.node(s_, j * x_.shape.collocation), time);
+    if (flown && relative_difference(x_, *flown, u) < elsewhere) u = *flown;
     const int n = x_.shape.dimension;
     Vector f(n);
     Eigen::MatrixXd fx(n, n);
