@@ -233,10 +233,10 @@ Linearization CondensedSystem::linearize(const Orbit& x, std::span<const EndVect
   return factorize(closing) ? Linearization::ready : Linearization::singular;
 }
 
-/// Where a length of vectors is asked for, free parameters are taken in units of their sizes, and durations of no
-/// ordinary size in that.
+/// Where a length of vectors is asked for, free parameters and durations are taken in units of their sizes: of rows in
+/// which durations outweigh all else a matrix would seem singular.
 void CondensedSystem::choose_units(const Orbit& x) {
-  const double unit = is_ordinary(time_size(system_, x)) ? 1.0 : time_size(system_, x);
+  const double unit = time_size(system_, x);
   for (int s = 0; s < shape_.segments; ++s) end_units_[index(duration_unknown(s))] = unit;
   for (int g = 0; g < globals_; ++g) end_units_[index(global_unknown(g))] = parameter_size(system_, x, g);
 }
