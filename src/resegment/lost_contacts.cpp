@@ -22,7 +22,7 @@ using Group = std::vector<int>;
 class LostContacts {
  public:
   LostContacts(const LabelledOrbit& source, const HybridSystem& system)
-      : source_(source), system_(system), signature_(source.settings.signature()), x_(source.start.orbit) {
+      : source_(source), system_(system), signature_(source.settings.signature()), x_(source.start.orbit), sizes_(state_sizes(system, signature_, x_)) {
     is_open_.assign(signature_.size(), false);
     for (int s = 0; s < count(); ++s) lost_.push_back(is_lost(s));
     for (int s = 0; s < count(); ++s)
@@ -99,7 +99,7 @@ class LostContacts {
     const Eigen::Map<const Eigen::VectorXd> end(x_.end(s), x_.shape.dimension);
     Eigen::VectorXd image(end.size());
     system_.value(FunctionKind::jump, index(s).jump, end.data(), x_.par.data(), image.data());
-    return relative_difference(x_, image, end) <= level::located;
+    return length_in_sizes(image - end, sizes_) <= level::located;
   }
 
   /// Groups end where the end of a segment remains; when none does, the orbit is closed at the first one that a section
@@ -212,12 +212,12 @@ class LostContacts {
     constexpr double on_it = level::located;
     const CollocationRule rule(x.shape.collocation);
     // A contact touches its surface; which way it goes through there is rounding.
-    const auto falls = [&x](const EventAt& event) { return event.rate() < -on_it * event.rate_scale(state_moduli(x)); };
+    const auto falls = [&](const EventAt& event) { return event.rate() < -on_it * event.rate_scale(sizes_); };
     const auto value = [&](double tau) {
       return system_.event(section.event, state_at(x, rule, 0, tau).data(), x.par.data());
     };
     const EventAt end = event_at(system_, section.event, section.field, x.end(0), x.par.data());
-    if (std::abs(end.h) <= on_it * end.scale(x.end(0), state_moduli(x)) && falls(end)) return 1.0;
+    if (std::abs(end.h) <= on_it * end.scale(x.end(0), sizes_) && falls(end)) return 1.0;
     for (int k = 1; k < x.shape.nodes_of(0); ++k) {
       const double from = x.tau(0, k - 1);
       const double to = x.tau(0, k);
@@ -237,6 +237,7 @@ class LostContacts {
   const HybridSystem& system_;
   Signature signature_;
   const Orbit& x_;
+  Eigen::VectorXd sizes_;      // of states
   std::vector<bool> lost_;     // of each segment
   std::vector<bool> is_open_;  // its end is no longer one
   std::vector<Group> groups_;

@@ -453,7 +453,7 @@ bool is_contact_born(const CutList& cut, std::size_t k, const LabelledOrbit& sou
     throw UserError(fmt::format("{}: no orbit with a short contact with {} begins here: {}", source.name,
                                 event_name(system, before.index.event), why));
   };
-  const double scale = met.rate_scale(state_moduli(x));
+  const double scale = met.rate_scale(state_sizes(system, source.settings.signature(), x));
   if (met.rate() > tangent_contact * scale)
     refuse(
         fmt::format("beyond the surface {} leads back to it at once (h_x f = {:.4g}, not 0), so that orbits slide "

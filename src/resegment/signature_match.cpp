@@ -94,6 +94,7 @@ std::vector<int> watched_after(const HybridSystem& system, const IndexVector& be
 
 void require_fit(const HybridSystem& system, const Signature& signature, const Orbit& x) {
   const int m = x.shape.segments;
+  const Eigen::VectorXd sizes = state_sizes(system, signature, x);
   const double* par = x.par.data();
   for (int s = 0; s < m; ++s) {
     const IndexVector& v = signature[static_cast<std::size_t>(s)];
@@ -108,7 +109,7 @@ void require_fit(const HybridSystem& system, const Signature& signature, const O
     Eigen::VectorXd after(end.size());
     system.value(FunctionKind::jump, v.jump, end.data(), par, after.data());
     Eigen::Index worst = 0;
-    const double gap = (after - next).cwiseAbs().cwiseQuotient(state_moduli(x)).maxCoeff(&worst);
+    const double gap = (after - next).cwiseAbs().cwiseQuotient(sizes).maxCoeff(&worst);
     if (!(gap <= fit_tolerance))
       throw UserError(fmt::format(
           "signature {} does not fit the orbit: jump {} ({}) at the end of segment {} leads to {} = {:.6g}, segment {} "
