@@ -12,16 +12,16 @@ namespace tchat {
 namespace {
 
 /// The point with this amplitude near `from`.
-std::optional<PathPoint> with_amplitude(PathFollower& follower, const PathPoint& from, const OrbitTrend& trend,
-                                        double wanted) {
+std::optional<PathPoint> with_amplitude(PathFollower& follower, int orbits, const PathPoint& from,
+                                        const OrbitTrend& trend, double wanted) {
   constexpr double as_expected = 0.5;  // relatively: the tangent knows amplitudes to their square
   constexpr double alike = 0.8;        // cosine: the same orbit, not begun half a turn later
-  const double growth = deviation_growth(from.orbit, from.tangent.states);
+  const double growth = deviation_growth(from.orbit, from.tangent.states, orbits);
   const double ds = (wanted / trend.amplitude(from.orbit) - 1.0) / growth;
   PathPoint found = from;
   if (!std::isfinite(ds) || !follower.step(from, ds, found).converged()) return std::nullopt;
   if (!(std::abs(trend.amplitude(found.orbit) - wanted) <= as_expected * wanted)) return std::nullopt;
-  if (deviation_cosine(from.orbit, found.orbit) < alike) return std::nullopt;
+  if (deviation_cosine(from.orbit, found.orbit, orbits) < alike) return std::nullopt;
   return found;
 }
 
@@ -49,7 +49,7 @@ void put_limits(PathFollower& follower, const DefiningSystem& system, const Path
   std::vector<Orbit> orbits;
   std::vector<double> amplitudes;
   for (const double share : shares) {
-    const std::optional<PathPoint> point = with_amplitude(follower, from, trend, share);
+    const std::optional<PathPoint> point = with_amplitude(follower, 1, from, trend, share);
     if (!point) return;
     orbits.push_back(point->orbit);
     amplitudes.push_back(trend.amplitude(point->orbit));
@@ -113,14 +113,15 @@ std::optional<PathPoint> smallest_orbit(PathFollower& follower, const DefiningSy
   const OrbitCondition* condition = follower.condition();
   const bool are_folds = condition != nullptr && condition->count() == 1 && condition->kept_multiplier() == 1;
   const bool is_branch = condition == nullptr && system.free_count() == 1 && follower.held().empty();
-  if (system.orbits() > 1 || !is_smooth(system) || !(is_branch || are_folds)) return std::nullopt;
+  const bool are_tori = system.orbits() > 1;
+  if (!are_tori && (!is_smooth(system) || !(is_branch || are_folds))) return std::nullopt;
   constexpr std::array of_folds = {1e-2, 2e-3, 5e-4};
   constexpr std::array of_branch = {1e-2, 1e-3, level::visible, level::same};
   const std::span<const double> shares = are_folds ? std::span<const double>(of_folds) : of_branch;
   PathPoint here = from;
   double reached = 1.0;
   for (const double wanted : shares) {
-    std::optional<PathPoint> next = with_amplitude(follower, here, trend, wanted);
+    std::optional<PathPoint> next = with_amplitude(follower, system.orbits(), here, trend, wanted);
     if (!next) break;
     here = *std::move(next);
     reached = wanted;

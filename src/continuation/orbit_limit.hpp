@@ -8,16 +8,17 @@
 
 namespace tchat {
 
-// Near a point at which orbits are born (Hopf bifurcation; on curves in two parameters a generalised Hopf point, or one
-// on an event surface) parameters, durations and means of an orbit of the amplitude a are those of the point and
-// c a^2 + d a^4 + ..., for another sign of a is the same orbit begun half a turn later. Newton's matrix is singular at
-// a = 0 alone: at 1e-5 of the amplitudes before, the parameters are those of the point to 1e-10, and runs can still
-// start. On a curve of folds, whose condition vanishes with a^2 for all orbits, rounding / a^2 is in the parameters:
-// there they are taken from larger orbits, by the polynomial in a^2.
+// Near a point at which orbits or tori are born (Hopf or torus bifurcation; on curves in two parameters a generalised
+// Hopf point, or one on an event surface) parameters, durations and means of an orbit of the amplitude a are those of
+// the point and c a^2 + d a^4 + ..., for another sign of a is the same orbit begun half a turn later. Newton's matrix
+// is singular at a = 0 alone: at 1e-5 of the amplitudes before, the parameters are those of the point to 1e-10, and
+// runs can still start. On a curve of folds, whose condition vanishes with a^2 for all orbits, rounding / a^2 is in the
+// parameters: there they are taken from larger orbits, by the polynomial in a^2.
 
 /// The point of the branch with the amplitude 1e-5, 5e-4 on curves of folds, as a share of the largest ones, or the
 /// smallest that is found; on curves of folds with the free parameters of the end, which are not those of the orbit.
-/// `from` is on the way there. Nothing where none is found, and on other curves. The follower's linearisation is
+/// `from` is on the way there. Tori that touch a surface do so at the distance of their amplitude from the orbit that
+/// they end at. Nothing where none is found, and on other curves. The follower's linearisation is
 /// another one afterwards.
 std::optional<PathPoint> smallest_orbit(PathFollower& follower, const DefiningSystem& system, const PathPoint& from,
                                         const OrbitTrend& trend);
