@@ -587,7 +587,7 @@ SpecialPointSearch::Zero SpecialPointSearch::locate(std::size_t test, const Path
   // No level of rounding: where a function is flat, it is small far from its zero.
   const LocatedZero zero = locate_zero_surely(at, bracket, settings_.tolerance, 0.0, settings_.max_evaluations);
   const bool is_jump = zero.status == ZeroSearch::jump;
-  const Search search = tests_[test]->is_of_tangent() && !has_tangent(zero.ds)       ? Search::failed
+  const Search search = tests_[test]->is_of_tangent() && !has_tangent(zero.ds)       ? Search::no_special_point
                         : zero.converged() || (is_jump && tests_[test]->is_switch()) ? Search::located
                         : is_jump && genuine                                         ? Search::jump
                         : is_jump                                                    ? Search::no_special_point
@@ -614,8 +614,8 @@ std::vector<std::size_t> SpecialPointSearch::vanishing_with(const Zero& first, c
     const auto zero = std::find_if(zeros.begin(), zeros.end(), [i](const Zero& z) { return z.test == i; });
     const std::optional<double>& value = there.tests[i].value;
     const bool small = value && std::abs(*value) <= together * std::abs(*end.tests[i].value);
-    const bool is_open = small || (tests_[i]->is_of_tangent() && !has_tangent(first.ds));
-    const bool same = zero == zeros.end() ? is_open && searches_[i] == Search::failed
+    const bool has_none = tests_[i]->is_of_tangent() && !has_tangent(first.ds);
+    const bool same = zero == zeros.end() ? has_none || (small && searches_[i] == Search::failed)
                                           : std::abs(zero->ds - first.ds) <= same_place ||
                                                 (small && is_flat(*zero, there, zero->ds - first.ds, length, end));
     if (same) group.push_back(i);
