@@ -233,10 +233,12 @@ Linearization CondensedSystem::linearize(const Orbit& x, std::span<const EndVect
   return factorize(closing) ? Linearization::ready : Linearization::singular;
 }
 
-/// Where a length of vectors is asked for, free parameters and durations are taken in units of their sizes: of rows in
-/// which durations outweigh all else a matrix would seem singular.
+/// Where a length of vectors is asked for, free parameters are taken in units of their sizes, and durations too where
+/// they are short, for a matrix in whose rows they outweigh all else would seem singular, or of no ordinary size.
 void CondensedSystem::choose_units(const Orbit& x) {
-  const double unit = time_size(system_, x);
+  const double time = time_size(system_, x);
+  if (!has_usual_time_) has_usual_time_ = time >= 1.0 && is_ordinary(time);
+  const double unit = *has_usual_time_ ? 1.0 : time;
   for (int s = 0; s < shape_.segments; ++s) end_units_[index(duration_unknown(s))] = unit;
   for (int g = 0; g < globals_; ++g) end_units_[index(global_unknown(g))] = parameter_size(system_, x, g);
 }

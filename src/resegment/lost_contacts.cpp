@@ -22,7 +22,11 @@ using Group = std::vector<int>;
 class LostContacts {
  public:
   LostContacts(const LabelledOrbit& source, const HybridSystem& system)
-      : source_(source), system_(system), signature_(source.settings.signature()), x_(source.start.orbit), sizes_(state_sizes(system, signature_, x_)) {
+      : source_(source),
+        system_(system),
+        signature_(source.settings.signature()),
+        x_(source.start.orbit),
+        sizes_(state_sizes(system, signature_, x_)) {
     is_open_.assign(signature_.size(), false);
     for (int s = 0; s < count(); ++s) lost_.push_back(is_lost(s));
     for (int s = 0; s < count(); ++s)
