@@ -118,7 +118,7 @@ class ColumnComparison {
     for (std::size_t k = 0; found.at_fault() && std::isfinite(at.supplied); ++k) {
       if (k == most_retries) return std::nullopt;
       const ExtrapolatedDifference& next = with_shorter_step(k);
-      if (agree(differences_[k], next, at.row)) break;
+      if (agree(k, at.row)) break;
       if (std::isfinite(next.value(at.row))) found = compared(at, next);
     }
     return found;
@@ -137,16 +137,19 @@ class ColumnComparison {
 
   /// Differences that are values of an oscillation by chance are about as large as its amplitude by the step, whatever
   /// constant the function has beside it.
-  bool agree(const ExtrapolatedDifference& a, const ExtrapolatedDifference& b, int row) const {
+  bool agree(std::size_t k, int row) const {
+    const ExtrapolatedDifference &a = differences_[k], &b = differences_[k + 1];
+    const double step = step_ * std::pow(next_step, k + 1);
     const double larger = std::max(std::abs(a.value(row)), std::abs(b.value(row)));
     const double here = along_(0.0)(row);
-    const double amplitude = std::max(std::abs(along_(step_)(row) - here), std::abs(along_(-step_)(row) - here));
+    const double amplitude = std::max(std::abs(along_(step)(row) - here), std::abs(along_(-step)(row) - here));
     const double of_amplitude = level::differences * amplitude + level::rounding_of_sums * std::abs(here);
-    return std::abs(a.value(row) - b.value(row)) <= same_digits * larger + of_amplitude / step_;
+    return std::abs(a.value(row) - b.value(row)) <= same_digits * larger + of_amplitude / step;
   }
 
   const ExtrapolatedDifference& with_shorter_step(std::size_t k) {
-    if (differences_.size() == k + 1) differences_.push_back(extrapolated_difference(along_, step_ *= next_step));
+    if (differences_.size() == k + 1)
+      differences_.push_back(extrapolated_difference(along_, step_ * std::pow(next_step, k + 1)));
     return differences_[k + 1];
   }
 
