@@ -233,8 +233,8 @@ Linearization CondensedSystem::linearize(const Orbit& x, std::span<const EndVect
   return factorize(closing) ? Linearization::ready : Linearization::singular;
 }
 
-/// Where a length of vectors is asked for, free parameters are taken in units of their sizes, and durations too where
-/// they are short, for a matrix in whose rows they outweigh all else would seem singular, or of no ordinary size.
+/// Where a length of vectors is asked for, free parameters are taken in units of their sizes. So are durations that are
+/// short, for a matrix in whose rows they outweigh all else would seem singular, and those of no ordinary size.
 void CondensedSystem::choose_units(const Orbit& x) {
   const double time = time_size(system_, x);
   if (!has_usual_time_) has_usual_time_ = time >= 1.0 && is_ordinary(time);

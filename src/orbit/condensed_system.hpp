@@ -220,7 +220,7 @@ class CondensedSystem {
   bool closing_rows_gave_way_ = false;
   std::vector<EndVector> closing_rows_;  // where others than those given stand
   EndVector end_units_;                  // of the unknowns at the ends, see choose_units()
-  std::optional<bool> has_usual_time_;   // the first orbit: a unit that came and went would make them jump
+  std::optional<bool> has_usual_time_;   // of the first orbit: a unit that came and went would jump
   EndVector rhs_;
   EndVector solution_;                // what SparseLu sees of dx
   std::vector<EndVector> null_ends_;  // and of null vectors: one for each closing row, known after linearize()
