@@ -35,6 +35,8 @@ constexpr double small_distance = 0.3;
 /// Near a crossing of two curves a step along one of them turns by less (cosine): states or periods that change alike
 /// along both make the angle between the curves small.
 constexpr double hardly_turned = 0.99;
+/// Places on a step that are so near to each other, as a share of it, may be one.
+constexpr double near_on_step = 1e-3;
 constexpr std::size_t history_length = 12;
 
 /// A defined value without its rounding.
@@ -326,10 +328,11 @@ std::optional<Candidate> SpecialPointSearch::farther_step(const PathPoint& here,
   return std::nullopt;
 }
 
+/// After a step of this length, by the trial steps so far.
 bool SpecialPointSearch::has_tangent(double length) const {
-  constexpr double beside = 1e-3;  // share of the step
-  return std::none_of(singular_.begin(), singular_.end(),
-                      [&](double singular) { return std::abs(singular - length) <= beside * std::abs(whole_->ds); });
+  return std::none_of(singular_.begin(), singular_.end(), [&](double singular) {
+    return std::abs(singular - length) <= near_on_step * std::abs(whole_->ds);
+  });
 }
 
 /// Where the equations are singular, as on a curve of branch points that passes a conservative system, what they have
@@ -340,7 +343,8 @@ NewtonResult SpecialPointSearch::step_within(const PathPoint& here, double lengt
   if (!result.converged()) return result;
   const OrbitVector& beyond = whole_->point.tangent;
   const double turn = 1.0 - dot(here.dual, beyond);
-  if (turn > 1.0 - same_direction || !(1.0 - dot(here.dual, trial.tangent) > most_turn * turn)) return result;
+  const double least = std::max(most_turn * turn, 1.0 - hardly_turned);
+  if (turn > 1.0 - same_direction || !(1.0 - dot(here.dual, trial.tangent) > least)) return result;
   const double share = length / whole_->ds;
   OrbitVector between = here.tangent;
   between.states += share * (beyond.states - here.tangent.states);
@@ -435,7 +439,6 @@ bool SpecialPointSearch::is_flat(const Zero& zero, const PointData& there, doubl
 /// contact and an impact velocity at a codimension-two end of a curve), the sharp one.
 SpecialPointSearch::Zero SpecialPointSearch::first_sharp_zero(const PathPoint& here, PathPoint& trial, double length,
                                                               const std::vector<Zero>& zeros, const PointData& end) {
-  constexpr double beside = 1e-3;  // share of the step
   const Zero first = *std::min_element(zeros.begin(), zeros.end(),
                                        [](const Zero& a, const Zero& b) { return std::abs(a.ds) < std::abs(b.ds); });
   const auto data_at = [&](const Zero& zero) -> std::optional<PointData> {
@@ -444,7 +447,8 @@ SpecialPointSearch::Zero SpecialPointSearch::first_sharp_zero(const PathPoint& h
   };
   for (const Zero& other : zeros) {
     const double distance = other.ds - first.ds;
-    if (std::abs(distance) <= 10.0 * settings_.tolerance || std::abs(distance) > beside * std::abs(length)) continue;
+    if (std::abs(distance) <= 10.0 * settings_.tolerance || std::abs(distance) > near_on_step * std::abs(length))
+      continue;
     const std::optional<PointData> at_first = data_at(first);
     const std::optional<PointData> at_other = data_at(other);
     if (at_first && at_other && is_flat(first, *at_other, distance, length, end) &&
@@ -604,7 +608,8 @@ SpecialPointSearch::Search SpecialPointSearch::zero_at_start(std::size_t test) c
 }
 
 /// The functions that vanish where one has its zero, evaluated as `there`: whose own zeros are at the same place as far
-/// as can be told, or, where these were not located, that have become small or depend on a tangent that is not there.
+/// as can be told, or, where these were not located, that have become small, or depend on a tangent that is not
+/// determined.
 std::vector<std::size_t> SpecialPointSearch::vanishing_with(const Zero& first, const std::vector<Zero>& zeros,
                                                             const PointData& there, double length,
                                                             const PointData& end) const {
