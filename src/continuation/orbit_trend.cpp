@@ -242,8 +242,8 @@ Resting near_equilibrium(const DefiningSystem& system, const Orbit& x, double si
   };
   Resting resting;
   const int active = system.free_parameters().front();
-  const auto fold =
-      find_fold(system.system(), start.field, start.state, x.par, active, sizes_from_ranges(ranges, state_moduli(x)));
+  const VectorXd sizes = sizes_from_ranges(ranges, state_sizes(system.system(), system.signature(), x));
+  const auto fold = find_fold(system.system(), start.field, start.state, x.par, active, sizes);
   if (fold && std::abs(fold->parameter - x.par(active - 1)) <= standstill * size_of_parameter)
     resting.fold = near(fold->state, fold->jacobian);
   if (const auto found = find_equilibrium(system.system(), start.field, start.state, x.par.data(), {}, ranges))

@@ -10,6 +10,7 @@
 #include "linear/array_kernel.hpp"
 #include "linear/memory.hpp"
 #include "model/events.hpp"
+#include "model/scales.hpp"
 #include "orbit/collocation_rule.hpp"
 #include "orbit/orbit.hpp"
 
@@ -46,13 +47,13 @@ class EventAlongSegment {
 
   /// The minimum near sigma of interval j, by the flow from the interval's left mesh point (by the polynomial where
   /// there is no flow, or it has gone elsewhere, as near a saddle it does from rounding alone); the small rest of h_x f
-  /// there is removed by one Newton step on the time.
-  EventMinimum polished(int j, double sigma) const {
-    constexpr double elsewhere = 0.1;  // of the largest states
+  /// there is removed by one Newton step on the time. `sizes`: of states.
+  EventMinimum polished(int j, double sigma, const Vector& sizes) const {
+    constexpr double elsewhere = 0.1;  // of these
     const double time = sigma * length(j) * x_.duration(s_);
     Vector u = nodes(j) * basis_at(sigma).values;
     const std::optional<Vector> flown = flow(x_.node(s_, j * x_.shape.collocation), time);
-    if (flown && relative_difference(x_, *flown, u) < elsewhere) u = *flown;
+    if (flown && length_in_sizes(*flown - u, sizes) < elsewhere) u = *flown;
     const int n = x_.shape.dimension;
     Vector f(n);
     Eigen::MatrixXd fx(n, n);
@@ -294,6 +295,7 @@ std::vector<EventMinimum> polished_minima(const HybridSystem& system, const Sign
   const IndexVector& v = signature[static_cast<std::size_t>(s)];
   const EventAlongSegment along(system, v.field, rule, x, s, course.event);
   std::vector<EventMinimum> minima;
+  Vector sizes;
   for (std::size_t i = 0; i < course.dips.size(); ++i) {
     const EventDip& dip = course.dips[i];
     if (dip.value >= below) continue;
@@ -301,7 +303,8 @@ std::vector<EventMinimum> polished_minima(const HybridSystem& system, const Sign
         is_pinned_start(system, signature, x, s, course.event, scale_of(system, x, course)))
       continue;
     if (i + 1 == course.dips.size() && course.last_hangs_on_end && v.event == course.event) continue;
-    minima.push_back(along.polished(dip.interval, dip.sigma));
+    if (sizes.size() == 0) sizes = state_sizes(system, signature, x);
+    minima.push_back(along.polished(dip.interval, dip.sigma, sizes));
   }
   return minima;
 }

@@ -148,18 +148,10 @@ Eigen::VectorXd state_uncertainty(const Orbit& x) {
   return (orbit_accuracy * sizes).cwiseMax(least);
 }
 
-Eigen::VectorXd state_moduli(const Orbit& x) {
-  const Eigen::VectorXd largest = x.states.cwiseAbs().rowwise().maxCoeff();
-  return largest.cwiseMax(std::max(level::same * largest.maxCoeff(), std::numeric_limits<double>::min()));
-}
-
-double relative_difference(const Orbit& x, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  return (a - b).cwiseAbs().cwiseQuotient(state_moduli(x)).maxCoeff<Eigen::PropagateNaN>();
-}
-
-double relative_event(const HybridSystem& system, const Orbit& x, int event, const Eigen::VectorXd& state) {
-  const EventAt at = event_at(system, event, state.data(), x.par.data());
-  const double scale = at.scale(state.data(), state_moduli(x));  // 0 where h depends on parameters alone
+double relative_event(const HybridSystem& system, int event, const Eigen::VectorXd& state, const double* par,
+                      const Eigen::VectorXd& sizes) {
+  const EventAt at = event_at(system, event, state.data(), par);
+  const double scale = at.scale(state.data(), sizes);  // 0 where h depends on parameters alone
   return std::abs(at.h) / (scale > 0.0 ? scale : 1.0);
 }
 

@@ -161,15 +161,9 @@ StateSizes known_sizes(const HybridSystem& system, const Signature& signature, c
 /// less than rounding of the largest of all states, for a state that is zero throughout shows nothing but rounding.
 Eigen::VectorXd state_uncertainty(const Orbit& x);
 
-/// The largest |x_k| over the orbit, n: differences of its states are compared with these. Not less than level::same
-/// times the largest of all, for a state that is zero throughout shows nothing but rounding.
-Eigen::VectorXd state_moduli(const Orbit& x);
-
-/// The largest |a_k - b_k| of two states beside the state_moduli() of the orbit.
-double relative_difference(const Orbit& x, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
-
-/// |h_j| at a state, beside what states as large as those of the orbit make of h_j (surface_scale()).
-double relative_event(const HybridSystem& system, const Orbit& x, int event, const Eigen::VectorXd& state);
+/// |h_j| at a state, beside what states of these sizes make of h_j (surface_scale()).
+double relative_event(const HybridSystem& system, int event, const Eigen::VectorXd& state, const double* par,
+                      const Eigen::VectorXd& sizes);
 
 // When a segment lasts no time.
 

@@ -46,7 +46,8 @@ void require_section(const ContactPoint& contact, const Orbit& x, const HybridSy
   Eigen::VectorXd after(x.shape.dimension);
   system.value(FunctionKind::jump, index.jump, end.data(), x.par.data(), after.data());
   const bool same_field = settings.segments[static_cast<std::size_t>(next)].index.field == index.field;
-  if (same_field && relative_difference(x, after, end) <= level::located) return;
+  const Eigen::VectorXd sizes = state_sizes(system, settings.signature(), x);
+  if (same_field && length_in_sizes(after - end, sizes) <= level::located) return;
   throw UserError(fmt::format(
       "{}: the contact with event {} ({}) coincides with the end of segment {}, where event {} ({}) {}: two events at "
       "once. Where they change places, or a segment of no duration vanishes or appears, the run goes on with another "
@@ -120,17 +121,16 @@ constexpr double touching = level::located;
 constexpr double same_place = level::located;
 
 struct Slope {
-  double h = 0.0;
   double rate = 0.0;   ///< h_x f
   double scale = 0.0;  ///< of the rate
 
   bool is_tangent() const { return std::abs(rate) <= tangent_contact * scale; }
 };
 
-/// At the end of segment s.
-Slope slope_at(const HybridSystem& system, int field, int event, const Orbit& x, int s) {
+/// At the end of segment s; `sizes`: of states.
+Slope slope_at(const HybridSystem& system, int field, int event, const Orbit& x, const Eigen::VectorXd& sizes, int s) {
   const EventAt at = event_at(system, event, field, x.end(s), x.par.data());
-  return {at.h, at.rate(), at.rate_scale(state_moduli(x))};
+  return {at.rate(), at.rate_scale(sizes)};
 }
 
 double largest_value(const HybridSystem& system, const Orbit& x, int s, int event) {
@@ -155,7 +155,11 @@ bool same(const ContactPoint& a, const ContactPoint& b) {
 class Search {
  public:
   Search(const ContactPoint& own, const Orbit& x, const HybridSystem& system, const RunSettings& settings)
-      : x_(x), system_(system), settings_(settings), found_{own} {}
+      : x_(x),
+        sizes_(state_sizes(system, settings.signature(), x)),
+        system_(system),
+        settings_(settings),
+        found_{own} {}
 
   std::vector<ContactPoint> run() {
     const ContactPoint own = found_.front();
@@ -181,7 +185,7 @@ class Search {
 
   void add_vanishing_impact(int s) {
     if (is_identity_jump(system_, index(s))) return;
-    if (slope_at(system_, index(s).field, index(s).event, x_, s).is_tangent())
+    if (slope_at(system_, index(s).field, index(s).event, x_, sizes_, s).is_tangent())
       add({ContactPoint::impact, s, index(s).event, 1.0});
   }
 
@@ -199,12 +203,13 @@ class Search {
   }
 
   void add_on_section(int s, int event) {
-    const bool touches = slope_at(system_, index(s).field, event, x_, s).is_tangent();
+    const bool touches = slope_at(system_, index(s).field, event, x_, sizes_, s).is_tangent();
     if (touches && index(s).event != event && ends_in_section(system_, settings_, s))
       add({ContactPoint::section, s, event, 1.0});
   }
 
   const Orbit& x_;
+  const Eigen::VectorXd sizes_;
   const HybridSystem& system_;
   const RunSettings& settings_;
   std::vector<ContactPoint> found_;
@@ -217,12 +222,14 @@ std::vector<ContactPoint> simultaneous_contacts(const ContactPoint& own, const O
   return Search(own, x, system, settings).run();
 }
 
-std::optional<int> section_at_end(const Orbit& x, const HybridSystem& system, int s, int field, int event) {
+std::optional<int> section_at_end(const Orbit& x, const Eigen::VectorXd& sizes, const HybridSystem& system, int s,
+                                  int field, int event) {
   const Eigen::Map<const Eigen::VectorXd> end(x.end(s), x.shape.dimension);
   for (int j = 1; j <= system.count(FunctionKind::event); ++j) {
     if (j == event) continue;
-    const Slope slope = slope_at(system, field, j, x, s);
-    if (relative_event(system, x, j, end) <= touching && slope.rate < 0.0 && !slope.is_tangent()) return j;
+    const Slope slope = slope_at(system, field, j, x, sizes, s);
+    if (relative_event(system, j, end, x.par.data(), sizes) <= touching && slope.rate < 0.0 && !slope.is_tangent())
+      return j;
   }
   return std::nullopt;
 }

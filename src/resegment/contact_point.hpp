@@ -44,8 +44,9 @@ std::vector<ContactPoint> simultaneous_contacts(const ContactPoint& own, const O
                                                 const RunSettings& settings);
 
 /// An event function other than `event` that falls through zero where segment s (from 0) ends: a Poincare section on
-/// which an orbit can be cut there whether it touches or not. Nothing when the problem has none.
-std::optional<int> section_at_end(const Orbit& x, const HybridSystem& system, int s, int field, int event);
+/// which an orbit can be cut there whether it touches or not. Nothing when the problem has none. `sizes`: of states.
+std::optional<int> section_at_end(const Orbit& x, const Eigen::VectorXd& sizes, const HybridSystem& system, int s,
+                                  int field, int event);
 
 // Orbits without a section: one segment with event function 0, whose start a phase condition fixes (IPS = 180 from a
 // Hopf bifurcation). At a grazing label the surface in contact becomes the section, and the orbit starts there.

@@ -116,7 +116,7 @@ class LostContacts {
     for (int s = 0; is_closed_ && s < count(); ++s) {
       if (is_lost_at(s)) continue;
       last = s;
-      if (section_at_end(x_, system_, s, index(s).field, index(s).event)) break;
+      if (section_at_end(x_, sizes_, system_, s, index(s).field, index(s).event)) break;
     }
     groups_.assign(1, {});
     for (int k = 1; k <= count(); ++k) {
@@ -169,7 +169,8 @@ class LostContacts {
   void cut_again(const std::optional<Signature>& wanted, SegmentList& list, OrbitWithoutContacts& result) const {
     NewSegment& only = list.front();
     if (!wanted) {
-      const auto section = section_at_end(result.orbit.start.orbit, system_, 0, only.index.field, only.index.event);
+      const auto section =
+          section_at_end(result.orbit.start.orbit, sizes_, system_, 0, only.index.field, only.index.event);
       if (!section)
         throw UserError(fmt::format(
             "{}: without its contact nothing cuts the orbit, and problem {} has no event function that falls through "

@@ -41,14 +41,17 @@ int identity_jump(const HybridSystem& system, int field) {
 /// Jumps for a contact with this field on segment s (from 0) that brings `own`: the identity, and others that leave
 /// every state of the segment as it is. Where a state is constant (a velocity in stick) the identity may leave it
 /// undetermined, and a jump that sets it does the same to the orbit and determines it.
-std::vector<int> jumps_without_effect(const HybridSystem& system, const Orbit& x, int s, int field, int own) {
+std::vector<int> jumps_without_effect(const HybridSystem& system, const LabelledOrbit& source, int s, int field,
+                                      int own) {
+  const Orbit& x = source.start.orbit;
+  const Eigen::VectorXd sizes = source.sizes(system);
   std::vector<int> jumps{identity_jump(system, field)};
   Eigen::VectorXd after(x.shape.dimension);
   const auto moves = [&](int jump) {
     for (int k = 0; k < x.shape.nodes_of(s); ++k) {
       const Eigen::Map<const Eigen::VectorXd> state(x.node(s, k), x.shape.dimension);
       system.value(FunctionKind::jump, jump, state.data(), x.par.data(), after.data());
-      if (!(relative_difference(x, after, state) <= level::located)) return true;
+      if (!(length_in_sizes(after - state, sizes) <= level::located)) return true;
     }
     return false;
   };
@@ -102,9 +105,10 @@ std::string list_of(const std::vector<ContactPoint>& contacts, const HybridSyste
 }
 
 /// Segment s (from 0) of the orbit no longer ends in `event` but in a section there, so that it may touch or not.
-void end_in_section(NewSegment& segment, const Orbit& x, const HybridSystem& system) {
+void end_in_section(NewSegment& segment, const LabelledOrbit& source, const HybridSystem& system) {
   const int event = segment.index.event;
-  const auto section = section_at_end(x, system, segment.piece.segment, segment.index.field, event);
+  const auto section = section_at_end(source.start.orbit, source.sizes(system), system, segment.piece.segment,
+                                      segment.index.field, event);
   if (!section)
     throw UserError(fmt::format(
         "event {} ({}) may be missed there once the impact is born elsewhere, so segment {} has to end in a section, "
@@ -125,7 +129,10 @@ std::vector<int> empty_segments(const SegmentList& segments) {
 }
 
 /// Watched events that come just where another one ends the segment.
-std::vector<Birth::EndEvent> events_at_ends(const SegmentList& segments, const Orbit& x, const HybridSystem& system) {
+std::vector<Birth::EndEvent> events_at_ends(const SegmentList& segments, const LabelledOrbit& source,
+                                            const HybridSystem& system) {
+  const Orbit& x = source.start.orbit;
+  const Eigen::VectorXd sizes = source.sizes(system);
   std::vector<Birth::EndEvent> list;
   for (std::size_t s = 0; s < segments.size(); ++s) {
     const NewSegment& segment = segments[s];
@@ -133,7 +140,7 @@ std::vector<Birth::EndEvent> events_at_ends(const SegmentList& segments, const O
     if (segment.piece.empty()) continue;  // its own growth tells
     for (const WatchedEvent& watched : segment.watched) {
       if (watched.event == segment.index.event) continue;
-      if (relative_event(system, x, watched.event, end) <= level::same)
+      if (relative_event(system, watched.event, end, x.par.data(), sizes) <= level::same)
         list.push_back({static_cast<int>(s), watched.event});
     }
   }
@@ -144,13 +151,14 @@ std::vector<Birth::EndEvent> events_at_ends(const SegmentList& segments, const O
 /// the same field watches, or what they have.
 void watch_after_events(SegmentList& segments, const LabelledOrbit& source, const HybridSystem& system) {
   const Orbit& x = source.start.orbit;
+  const Eigen::VectorXd sizes = source.sizes(system);
   for (const int empty : empty_segments(segments)) {
     const auto s = static_cast<std::size_t>(empty);
     NewSegment& segment = segments[s];
     const NewSegment& before = segments[(s + segments.size() - 1) % segments.size()];
     const int next_field = segments[(s + 1) % segments.size()].index.field;
     const std::vector<int> events =
-        watched_after(system, before.index, end_of(before.piece, x), x.par, segment.index, next_field);
+        watched_after(system, before.index, end_of(before.piece, x), x.par, sizes, segment.index, next_field);
     if (!events.empty()) {
       segment.watched.clear();
       for (const int event : events) segment.watched.push_back({event, true});
@@ -172,7 +180,7 @@ CutList without_other_impacts(CutList cut, const std::vector<ContactPoint>& cont
                                  [&](const NewSegment& segment) { return segment.piece.segment == other.segment; });
     CutList alone{cut.segments, {static_cast<std::size_t>(at - cut.segments.begin()), cut.contacts.front()}};
     NewSegment& end = alone.segments[alone.contacts[0]];
-    end_in_section(end, x, system);
+    end_in_section(end, source, system);
     end.index.jump = identity_jump(system, end.index.field);
     alone = without_empty_segments(std::move(alone), 0, x);
     cut = {alone.segments, {alone.contacts[1]}};
@@ -209,7 +217,7 @@ NewOrbit to_grazing_curve(const ResegmentRequest& request, const LabelledOrbit& 
   NewOrbit target{cut.segments, {150, 1, contact_jump}};
   target.contact = cut.contacts.front();
   if (!request.jump && !request.signature && contact.where != ContactPoint::section)
-    target.contact_jumps = jumps_without_effect(system, x, contact.segment, index.field, contact_jump);
+    target.contact_jumps = jumps_without_effect(system, source, contact.segment, index.field, contact_jump);
   if (contacts.size() > 1)
     target.remarks.push_back(fmt::format("The orbit has {} contacts at once ({}); the curve keeps that of its label.",
                                          contacts.size(), list_of(contacts, system)));
@@ -223,7 +231,7 @@ SegmentList turn_without_contact(const LabelledOrbit& source, const std::vector<
   for (const ContactPoint& contact : contacts) {
     NewSegment& segment = segments[static_cast<std::size_t>(contact.segment)];
     watch(segment, contact.event);
-    if (contact.where == ContactPoint::grazing_curve && !is_given) end_in_section(segment, source.start.orbit, system);
+    if (contact.where == ContactPoint::grazing_curve && !is_given) end_in_section(segment, source, system);
   }
   return segments;
 }
@@ -329,7 +337,7 @@ NewOrbit to_signature(const ResegmentRequest& request, const LabelledOrbit& sour
                     *request.signature, source.name));
   watch_after_events(segments, source, system);
   NewOrbit target{segments, {old.problem_type, old.branch_mode, old.grazing_jump}, source.solution.type};
-  target.birth = {{}, empty_segments(segments), events_at_ends(segments, source.start.orbit, system)};
+  target.birth = {{}, empty_segments(segments), events_at_ends(segments, source, system)};
   return target;
 }
 

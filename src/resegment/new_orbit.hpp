@@ -24,6 +24,11 @@ struct LabelledOrbit {
   LabelledSolution solution;
   std::vector<int> free_parameters;  ///< of the problem, at the label
   OrbitStart start;
+
+  /// Of its states (orbit/orbit.hpp).
+  Eigen::VectorXd sizes(const HybridSystem& system) const {
+    return state_sizes(system, settings.signature(), start.orbit);
+  }
 };
 
 /// What the next run is to continue.

@@ -34,11 +34,11 @@ struct Following {
 
 /// At x or beside it, in the direction of one state.
 Following successors_with_field(const HybridSystem& system, const IndexVector& before, const Eigen::VectorXd& x,
-                                const ParameterVector& par, int field) {
+                                const ParameterVector& par, const Eigen::VectorXd& sizes, int field) {
   constexpr double beside = 1e-3;
   for (Eigen::Index k = -1; k < 2 * x.size(); ++k) {
     Eigen::VectorXd at = x;
-    if (k >= 0) at(k / 2) += (k % 2 == 0 ? beside : -beside) * (1.0 + std::abs(x(k / 2)));
+    if (k >= 0) at(k / 2) += (k % 2 == 0 ? beside : -beside) * sizes(k / 2);
     std::vector<IndexVector> list = successors(system, before, at, par);
     if (has_field(list, field)) return {at, std::move(list)};
   }
@@ -79,8 +79,9 @@ Signature segments_after_impact(const HybridSystem& system, const IndexVector& a
 }
 
 std::vector<int> watched_after(const HybridSystem& system, const IndexVector& before, const Eigen::VectorXd& x,
-                               const ParameterVector& par, const IndexVector& own, int next_field) {
-  const auto [at, following] = successors_with_field(system, before, x, par, own.field);
+                               const ParameterVector& par, const Eigen::VectorXd& sizes, const IndexVector& own,
+                               int next_field) {
+  const auto [at, following] = successors_with_field(system, before, x, par, sizes, own.field);
   Eigen::VectorXd start(x.size());
   system.value(FunctionKind::jump, before.jump, at.data(), par.data(), start.data());
   std::vector<int> events = relevant_events(system, following, own.field, start.data(), par.data());
@@ -101,7 +102,7 @@ void require_fit(const HybridSystem& system, const Signature& signature, const O
     const Eigen::Map<const Eigen::VectorXd> end(x.end(s), x.shape.dimension);
     const Eigen::Map<const Eigen::VectorXd> next(x.start((s + 1) % m), x.shape.dimension);
     const double h = system.event(v.event, end.data(), par);
-    if (!(relative_event(system, x, v.event, end) <= fit_tolerance))
+    if (!(relative_event(system, v.event, end, par, sizes) <= fit_tolerance))
       throw UserError(
           fmt::format("signature {} does not fit the orbit: {} is {:.4g}, not 0, at the end of segment {}; constants "
                       "or problem are not those of the run that wrote the label, or the signature is wrong",
@@ -135,6 +136,9 @@ class SignatureMatch {
  public:
   SignatureMatch(const HybridSystem& system, const SegmentList& old, const Orbit& x, const Signature& signature)
       : system_(system), x_(x), signature_(signature) {
+    Signature known;
+    for (const NewSegment& segment : old) known.push_back(segment.index);
+    sizes_ = state_sizes(system, known, x);
     for (const NewSegment& segment : old)
       if (!lasts_no_time(x, segment.piece.segment)) lasting_.push_back(segment);
     check_numbers(old.size());
@@ -234,14 +238,16 @@ class SignatureMatch {
     return segments;
   }
 
-  /// The largest violation of a terminal event or a jump, relative to what Newton may repair.
+  /// The largest violation of a terminal event and the jump there, relative to what Newton may repair.
   double misfit_of(const SegmentList& segments) const {
     double worst = 0.0;
     for (std::size_t s = 0; s < segments.size(); ++s) {
       const Vector end = end_of(segments[s]);
       const Vector next = start_of(segments[(s + 1) % segments.size()]);
-      worst = std::max(worst, relative_event(system_, x_, segments[s].index.event, end) / misfit_of_none);
-      worst = std::max(worst, relative_difference(x_, after(segments[s].index, end), next) / misfit_of_none);
+      const double event = relative_event(system_, segments[s].index.event, end, x_.par.data(), sizes_);
+      const double gap = length_in_sizes(after(segments[s].index, end) - next, sizes_);
+      const double misfit = (event + gap) / misfit_of_none;
+      if (!(misfit <= worst)) worst = misfit;
     }
     return std::isfinite(worst) ? worst : std::numeric_limits<double>::max();
   }
@@ -256,6 +262,7 @@ class SignatureMatch {
   const HybridSystem& system_;
   const Orbit& x_;
   const Signature& signature_;
+  Vector sizes_;  // of states
   SegmentList lasting_;
   std::size_t rotation_ = 0;
   Places places_;

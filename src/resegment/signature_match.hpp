@@ -23,9 +23,10 @@ Signature segments_after_impact(const HybridSystem& system, const IndexVector& a
 /// The event functions to watch on a segment of index vector `own` that follows `before`, which ended (before its jump)
 /// in state x: those of the index jump function's index vectors, without Poincare sections (identity jump, the same
 /// field after it; of `own` the next segment's field tells). x may lie where the function changes its mind: it is asked
-/// beside x as well. Empty when the plugin has none or it leads to other fields.
+/// beside x as well, at a share of the `sizes` of states. Empty when the plugin has none or it leads to other fields.
 std::vector<int> watched_after(const HybridSystem& system, const IndexVector& before, const Eigen::VectorXd& x,
-                               const ParameterVector& par, const IndexVector& own, int next_field);
+                               const ParameterVector& par, const Eigen::VectorXd& sizes, const IndexVector& own,
+                               int next_field);
 
 /// Throws UserError that names the segment when a terminal event does not hold at a segment's end or a jump does not
 /// lead to the next segment's start, coarsely: what Newton is meant to repair passes.

@@ -88,8 +88,9 @@ std::string monitor_lists(const RunSettings& settings, const SegmentsByEvent& mi
 }
 
 /// Is the event's function negative somewhere on segment s, in any return of a torus? Then monitoring it would make
-/// every orbit inadmissible.
-bool is_negative(const HybridSystem& system, int event, const Orbit& x, int s, int segments_per_return) {
+/// every orbit inadmissible. `sizes`: of states.
+bool is_negative(const HybridSystem& system, int event, const Orbit& x, const Eigen::VectorXd& sizes, int s,
+                 int segments_per_return) {
   const int first = s;
   double least = 0.0;
   double scale = 0.0;
@@ -100,7 +101,7 @@ bool is_negative(const HybridSystem& system, int event, const Orbit& x, int s, i
       scale = std::max(scale, std::abs(h));
     }
   const EventAt at = event_at(system, event, x.start(first), x.par.data());
-  scale = std::max(scale, at.scale(x.start(first), state_moduli(x)));
+  scale = std::max(scale, at.scale(x.start(first), sizes));
   return !(least >= -level::located * scale);
 }
 
@@ -110,6 +111,7 @@ SegmentsByEvent missing_events(const HybridSystem& system, const RunSettings& se
   const std::set<int> seen = watched(settings);
   const Signature signature = settings.signature();
   const std::size_t m = signature.size();
+  const Eigen::VectorXd sizes = state_sizes(system, signature, start);
   for (std::size_t s = 0; s < m; ++s) {
     const double* x = start.start(static_cast<int>(s));
     const IndexVector& before = signature[(s + m - 1) % m];
@@ -120,7 +122,7 @@ SegmentsByEvent missing_events(const HybridSystem& system, const RunSettings& se
         std::none_of(following->begin(), following->end(), [field](const IndexVector& v) { return v.field == field; }))
       continue;
     for (const int event : relevant_events(system, *following, field, x, start.par.data()))
-      if (!seen.contains(event) && !is_negative(system, event, start, static_cast<int>(s), static_cast<int>(m)))
+      if (!seen.contains(event) && !is_negative(system, event, start, sizes, static_cast<int>(s), static_cast<int>(m)))
         missing[event].insert(static_cast<int>(s) + 1);
   }
   return missing;
