@@ -34,7 +34,7 @@ constexpr double absolute_move = level::located;  // of the size that a paramete
 constexpr double told_move = level::orbit;
 /// The least part of the way from known to wanted parameter values that is tried as one step.
 constexpr double smallest_part = 1.0 / 1024;
-/// The largest change of the states in such a step, relative to 1 + max |u|: further away are other branches.
+/// The largest change_between() orbits of such a step: further away are other branches.
 constexpr double largest_change = 0.3;
 constexpr int most_meshes = 10;
 /// Meshes whose points have moved by less than this part of an interval are the same.
@@ -117,6 +117,15 @@ std::vector<int> changed_parameters(const SelectedStart& selected, const Definin
   return changed;
 }
 
+/// Of the states, relative to 1 + max |u|, and of the durations, relative to the period.
+double change_between(const Orbit& from, const Orbit& to) {
+  const double states = (to.states - from.states).cwiseAbs().maxCoeff() / (1.0 + from.states.cwiseAbs().maxCoeff());
+  double durations = 0.0;
+  for (int s = 0; s < from.shape.segments; ++s)
+    durations = std::max(durations, std::abs(to.duration(s) - from.duration(s)));
+  return std::max(states, durations > 0.0 ? durations / std::abs(from.period()) : 0.0);
+}
+
 struct Approach {
   NewtonResult result;
   double reached = 0.0;  ///< part of the way
@@ -141,9 +150,7 @@ Approach approach(PathFollower& follower, const SelectedStart& selected, const s
     for (const int k : changed)
       trial.orbit.par(k - 1) = next == 1.0 ? wanted(k - 1) : known(k - 1) + next * (wanted(k - 1) - known(k - 1));
     way.result = follower.start_at_fixed_parameter(trial);
-    const double change = (trial.orbit.states - point.orbit.states).cwiseAbs().maxCoeff() /
-                          (1.0 + point.orbit.states.cwiseAbs().maxCoeff());
-    if (way.result.converged() && change < largest_change) {
+    if (way.result.converged() && change_between(point.orbit, trial.orbit) < largest_change) {
       std::swap(point, trial);
       way.reached = next;
       part *= 1.5;
@@ -252,25 +259,32 @@ std::string moved_beside(const Orbit& start, const Orbit& found, const DefiningS
 /// Newton's method only halves its error, and rounding decides on which side of the turning point it ends, and so where
 /// the branch is followed to. By minimum norm it is the turning point itself. A monitor keeps its value to first order
 /// only: with an energy as ICP(1), stationary where a family begins to impact, Newton's method goes far along the
-/// family.
-void settle_turning_point(PathFollower& follower, const HybridSystem& system, const SelectedStart& selected,
-                          double asked, PathPoint& point, NewtonResult& result) {
+/// family, or, as its equations are singular there, anywhere.
+void settle_turning_point(PathFollower& follower, const HybridSystem& system, const Orbit& start, double asked,
+                          PathPoint& point, NewtonResult& result) {
   constexpr int regular_iterations = 3;
   const Eigen::Index k = follower.principal() - 1;
   const auto move = [&](const PathPoint& to) { return std::abs(to.orbit.par(k) - asked); };
-  const bool is_far = has_moved_far(system, follower.principal(), asked, point.orbit.par(k));
+  const auto keeps_value = [&](const PathPoint& to) {
+    return !has_moved_far(system, follower.principal(), asked, to.orbit.par(k));
+  };
+  const auto is_near = [&](const PathPoint& to) { return change_between(start, to.orbit) < largest_change; };
+  const bool is_far = !keeps_value(point);
+  const bool is_elsewhere = !is_near(point);
   const bool is_turning = result.iterations > regular_iterations && follower.principal_share(point) <= level::visible;
-  if (!result.converged() || !(is_far || is_turning)) return;
-  PathPoint at = follower.make_point(selected.start.orbit);
+  if (!result.converged() || !(is_far || is_elsewhere || is_turning)) return;
+  PathPoint at = follower.make_point(start);
   const NewtonResult there = follower.start_by_minimum_norm(at);
   const double difference = std::abs(at.orbit.par(k) - point.orbit.par(k));
   const bool is_same = difference <= level::orbit * system.parameter_size(follower.principal(), at.orbit.par(k));
-  if (there.converged() && (is_far ? move(at) <= move(point) : is_same)) {
+  const bool is_better = is_far ? move(at) <= move(point) : is_elsewhere ? keeps_value(at) && is_near(at) : is_same;
+  if (there.converged() && is_better) {
     point = std::move(at);
     result = there;
     return;
   }
-  // The factors that the follower holds are to be those of `point`.
+  // The factors that the follower holds are to be those of the point.
+  point = follower.make_point(start);
   result = follower.start_at_fixed_parameter(point);
 }
 
@@ -286,7 +300,7 @@ FirstCorrection correct_start(PathFollower& follower, const DefiningSystem& syst
   const double asked = start.par(principal - 1);
   PathPoint point = follower.make_point(start);
   NewtonResult result = follower.start_at_fixed_parameter(point);
-  settle_turning_point(follower, problem, selected, asked, point, result);
+  settle_turning_point(follower, problem, start, asked, point, result);
   const std::string trouble = describe(result.status);
   FirstCorrection corrected{{}, follower.newton().history(), {}, {}};
 
