@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/levels.hpp"
 #include "continuation/path_follower.hpp"
@@ -16,6 +17,8 @@ namespace {
 constexpr double smallest_share = 0.1;
 constexpr double largest_share = 0.4;
 constexpr int most_rounds = 20;
+/// The least share of a move that the next one is trusted to be: two places that agree more closely do so by chance.
+constexpr double least_move = 0.01;
 /// Rounds in a row in which the place moves more than before.
 constexpr int most_worse = 2;
 /// Share of the step that counts as one place for other functions that vanish there.
@@ -54,13 +57,17 @@ bool BranchPointBracket::narrow(const Evaluate& evaluate, PathPoint& trial, doub
   const double change = high_.value - low_.value;
   const double least = std::max({tolerance, reachable, reachable_share * whole});
   double share = smallest_share;
+  double step = whole;
   double moved = std::numeric_limits<double>::infinity();
   int worse = 0;
   Located best;
   for (int round = 0; round < most_rounds; ++round) {
     const double last = zero_;
     zero_ = interpolated_zero();
-    if (round > 0) moved = std::abs(zero_ - last);
+    if (round > 0) {
+      const double before = std::exchange(step, std::abs(zero_ - last));
+      moved = std::max(step, least_move * before);
+    }
     if (moved <= best.moved && high_.at - low_.at <= narrow_enough * whole) {
       best = {moved, zero_, low_, high_};
       put_zero(trial);
