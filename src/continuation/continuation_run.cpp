@@ -34,8 +34,6 @@ constexpr double shrunk_enough = level::visible;
 /// The deviations of orbits before and behind a point are opposite but for what a step changes.
 constexpr double opposite = -0.8;
 constexpr double shrunk = level::located;
-/// Special points that are so many tolerances of their location away from a point are at that point.
-constexpr double same_place = 10.0;
 
 /// On arclength: states are known to a share of their size; where steps are far shorter, as those of a parameter in
 /// large units, to a share of ten thousand of these.
@@ -135,7 +133,7 @@ BranchSummary ContinuationRun::run(PathPoint start) {
       break;
     }
     const std::optional<double> to_first = move_to_first_point();
-    const bool is_there = to_first && std::abs(*to_first) <= same_place * location_accuracy(settings_);
+    const bool is_there = to_first && std::abs(*to_first) <= location_settings(settings_).same_place();
     special = is_there ? SpecialPoint{} : advance();
     if (to_first) special = end_at_first_point(special, *to_first);
     if (const std::string zero = passed_zero_duration(); !ended_ && !zero.empty()) {
@@ -177,7 +175,7 @@ std::optional<double> ContinuationRun::move_to_first_point() {
   if (!settings_.stop_when_closed) return std::nullopt;
   const std::optional<ClosedBranch::Return> way = closed_.on_step(here_, next_.point, next_.ds);
   if (!way) return std::nullopt;
-  const double beyond = std::copysign(same_place * location_accuracy(settings_), next_.ds);
+  const double beyond = std::copysign(location_settings(settings_).same_place(), next_.ds);
   Candidate past{next_.point, way->length + beyond, {}};
   const NewtonResult newton = follower_.step(way->from, past.ds, past.point);
   if (!newton.converged()) {
@@ -198,7 +196,7 @@ SpecialPoint ContinuationRun::end_at_first_point(SpecialPoint special, double le
   if (ended_) return special;
   const double rest = std::abs(length) - std::abs(next_.ds);
   const bool is_special = special.type != PointType::ordinary;
-  if (is_special && rest > same_place * location_accuracy(settings_)) return special;
+  if (is_special && rest > location_settings(settings_).same_place()) return special;
   if (!is_special) {
     newton_ = follower_.step(here_, length, next_.point);
     next_.ds = length;

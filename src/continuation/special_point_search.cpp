@@ -447,8 +447,7 @@ SpecialPointSearch::Zero SpecialPointSearch::first_sharp_zero(const PathPoint& h
   };
   for (const Zero& other : zeros) {
     const double distance = other.ds - first.ds;
-    if (std::abs(distance) <= 10.0 * settings_.tolerance || std::abs(distance) > near_on_step * std::abs(length))
-      continue;
+    if (std::abs(distance) <= settings_.same_place() || std::abs(distance) > near_on_step * std::abs(length)) continue;
     const std::optional<PointData> at_first = data_at(first);
     const std::optional<PointData> at_other = data_at(other);
     if (at_first && at_other && is_flat(first, *at_other, distance, length, end) &&
@@ -494,9 +493,12 @@ void SpecialPointSearch::report_lost(const PointData& next, const Reports& repor
   }
 }
 
-/// Right after the start a zero is the start itself: a label that the run begins from.
+/// Right after the start a zero is the start itself: a label that the run begins from. Right after a label it cannot be
+/// told from that.
 bool SpecialPointSearch::is_start(double length) const {
-  return history_.size() == 1 && std::abs(length) <= 10.0 * settings_.tolerance;
+  const bool is_special =
+      history_.size() == 1 || std::find(labelled_.begin(), labelled_.end(), true) != labelled_.end();
+  return is_special && std::abs(length) <= settings_.same_place();
 }
 
 /// The zero of a function that Newton's method cannot come near to.
@@ -613,7 +615,6 @@ SpecialPointSearch::Search SpecialPointSearch::zero_at_start(std::size_t test) c
 std::vector<std::size_t> SpecialPointSearch::vanishing_with(const Zero& first, const std::vector<Zero>& zeros,
                                                             const PointData& there, double length,
                                                             const PointData& end) const {
-  const double same_place = 10.0 * settings_.tolerance;
   std::vector<std::size_t> group;
   for (const std::size_t i : changed(end)) {
     const auto zero = std::find_if(zeros.begin(), zeros.end(), [i](const Zero& z) { return z.test == i; });
@@ -621,7 +622,7 @@ std::vector<std::size_t> SpecialPointSearch::vanishing_with(const Zero& first, c
     const bool small = value && std::abs(*value) <= together * std::abs(*end.tests[i].value);
     const bool has_none = tests_[i]->is_of_tangent() && !has_tangent(first.ds);
     const bool same = zero == zeros.end() ? has_none || (small && searches_[i] == Search::failed)
-                                          : std::abs(zero->ds - first.ds) <= same_place ||
+                                          : std::abs(zero->ds - first.ds) <= settings_.same_place() ||
                                                 (small && is_flat(*zero, there, zero->ds - first.ds, length, end));
     if (same) group.push_back(i);
   }

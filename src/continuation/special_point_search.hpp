@@ -23,6 +23,9 @@ struct LocationSettings {
   double tolerance = level::tolerance;           ///< on arclength
   int max_evaluations = 10;                      ///< ITMX
   std::vector<std::vector<int>> monitored = {};  ///< event functions of each segment, as in inadmissibilities()
+
+  /// Special points that are so near to a point, by arclength, are at that point.
+  double same_place() const { return 10.0 * tolerance; }
 };
 
 class SpecialPointSearch {
