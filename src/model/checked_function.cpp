@@ -107,18 +107,21 @@ class ColumnComparison {
  public:
   /// `along`: the function of a step in the column's variable. `scale`: of the function.
   ColumnComparison(std::function<VectorXd(double)> along, double step, double scale)
-      : along_(std::move(along)), step_(step), scale_(scale), differences_{extrapolated_difference(along_, step)} {}
+      : along_(std::move(along)), step_(step), scale_(scale) {
+    differences_.reserve(most_retries + 2);  // references to them stay
+    differences_.push_back(extrapolated_difference(along_, step));
+  }
 
   /// Of an entry with these row, column and supplied value; nothing where no differences can be believed. A fault needs
-  /// two step lengths whose differences agree: on a function that oscillates within the step, and on rounding, an error
-  /// estimate may be small by chance.
+  /// three step lengths whose differences agree: on a function that oscillates within the step, and on rounding, an
+  /// error estimate may be small by chance, and with so many steps two of them agree by chance.
   std::optional<ComparedEntry> entry(ComparedEntry at) {
     if (!std::isfinite(differences_.front().value(at.row))) return std::nullopt;
     ComparedEntry found = compared(at, differences_.front());
     for (std::size_t k = 0; found.at_fault() && std::isfinite(at.supplied); ++k) {
       if (k == most_retries) return std::nullopt;
       const ExtrapolatedDifference& next = with_shorter_step(k);
-      if (agree(k, at.row)) break;
+      if (agree(k, at.row) && agree(k + 1, at.row)) break;
       if (std::isfinite(next.value(at.row))) found = compared(at, next);
     }
     return found;
@@ -137,8 +140,8 @@ class ColumnComparison {
 
   /// Differences that are values of an oscillation by chance are about as large as its amplitude by the step, whatever
   /// constant the function has beside it.
-  bool agree(std::size_t k, int row) const {
-    const ExtrapolatedDifference &a = differences_[k], &b = differences_[k + 1];
+  bool agree(std::size_t k, int row) {
+    const ExtrapolatedDifference &b = with_shorter_step(k), &a = differences_[k];
     const double step = step_ * std::pow(next_step, k + 1);
     const double larger = std::max(std::abs(a.value(row)), std::abs(b.value(row)));
     const double here = along_(0.0)(row);
