@@ -126,9 +126,12 @@ struct CvodesFlow::Implementation {
       return;
     }
     const Vector absolute(N_VNew_Serial(n, context.get()), &N_VDestroy);
-    for (int i = 0; i < n; ++i)
-      N_VGetArrayPointer(absolute.get())[i] = options.absolute_tolerance * size_for_tolerance(options.sizes(i));
+    for (int i = 0; i < n; ++i) N_VGetArrayPointer(absolute.get())[i] = tolerance_of(i);
     CVodeSVtolerances(cvode(), options.relative_tolerance, absolute.get());
+  }
+
+  double tolerance_of(int state) const {
+    return options.absolute_tolerance * size_for_tolerance(options.sizes(state));
   }
 
   void start_sensitivities() {
@@ -139,9 +142,27 @@ struct CvodesFlow::Implementation {
       if (c < n) N_VGetArrayPointer(sensitivity_pointers.back())[c] = 1.0;
     }
     CVodeSensInit(cvode(), columns, CV_STAGGERED, &variational_equations, sensitivity_pointers.data());
-    std::vector<double> absolute(static_cast<std::size_t>(columns), options.absolute_tolerance);
-    CVodeSensSStolerances(cvode(), options.relative_tolerance, absolute.data());
+    set_tolerances_of_sensitivities();
     CVodeSetSensErrCon(cvode(), SUNTRUE);
+  }
+
+  /// dx_i / dx_c and dx_i / dp: shares of the size of x_i by that of x_c, or by the modulus of a parameter.
+  void set_tolerances_of_sensitivities() {
+    if (are_usual(options.sizes)) {
+      std::vector<double> absolute(static_cast<std::size_t>(columns), options.absolute_tolerance);
+      CVodeSensSStolerances(cvode(), options.relative_tolerance, absolute.data());
+      return;
+    }
+    std::vector<Vector> absolute;
+    std::vector<N_Vector> pointers;
+    for (int c = 0; c < columns; ++c) {
+      const double by = c < n ? options.sizes(c) : std::abs(par(options.active[static_cast<std::size_t>(c - n)] - 1));
+      absolute.emplace_back(N_VNew_Serial(n, context.get()), &N_VDestroy);
+      pointers.push_back(absolute.back().get());
+      for (int i = 0; i < n; ++i)
+        N_VGetArrayPointer(pointers.back())[i] = tolerance_of(i) / size_for_tolerance(by);
+    }
+    CVodeSensSVtolerances(cvode(), options.relative_tolerance, pointers.data());
   }
 
   bool evaluate(N_Vector at) {
