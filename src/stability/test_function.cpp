@@ -246,6 +246,8 @@ LocatedZero locate_zero_surely(const Function& function, const SignChange& step,
     if (ended && !nothing) zero.status = is_jump(step, bracket, tolerance) ? ZeroSearch::jump : ZeroSearch::located;
     if (zero.converged() || zero.status == ZeroSearch::jump || !halve(bracket, function)) break;
   }
+  // No value is smaller than others where the function only switches.
+  if (zero.status == ZeroSearch::jump) zero.ds = bracket.low;
   return zero;
 }
 

@@ -283,7 +283,7 @@ LocatedZero locate_zero(const std::function<std::optional<double>(double)>& func
                         double tolerance, double rounding_level, int max_evaluations);
 
 /// The same from one place of a step to another, as often as it takes: where the trials do not suffice or a step fails,
-/// once more on a half of what is left, divided where a step converges.
+/// once more on a half of what is left, divided where a step converges. The place of a jump is the last one before it.
 LocatedZero locate_zero_surely(const std::function<std::optional<double>(double)>& function, const SignChange& step,
                                double tolerance, double rounding_level, int max_evaluations);
 
