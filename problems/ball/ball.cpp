@@ -3,7 +3,7 @@
 //     height'' = -1,   table = Gamma sin(t),   at height = table: v -> -r v + (1 + r) w
 //
 // with v and w the velocities of ball and table, and Gamma = A omega^2 / g. The table's motion is a state too: (table,
-// w) is attracted to the circle of radius Gamma.
+// w) is attracted to the circle of radius Gamma. While it is not on it the table's velocity is another one than w.
 #include <array>
 #include <cmath>
 #include <tchat/problem.hpp>
@@ -26,7 +26,7 @@ struct BouncingBall {
 
   template <class T>
   void field(int, const T* x, const T* par, T* f) const {
-    const T growth = 1.0 - (x[2] * x[2] + x[3] * x[3]) / (par[0] * par[0]);
+    const T growth = growth_of(x, par);
     f[0] = x[1];
     f[1] = T(-1.0);
     f[2] = growth * x[2] + x[3];
@@ -41,7 +41,13 @@ struct BouncingBall {
   template <class T>
   void jump(int k, const T* x, const T* par, T* g) const {
     for (int i = 0; i < dimension; ++i) g[i] = x[i];
-    if (k == 1) g[1] = -par[1] * x[1] + (1.0 + par[1]) * x[3];
+    if (k == 1) g[1] = -par[1] * x[1] + (1.0 + par[1]) * (growth_of(x, par) * x[2] + x[3]);
+  }
+
+  /// Of table and w; zero on the circle.
+  template <class T>
+  static T growth_of(const T* x, const T* par) {
+    return 1.0 - (x[2] * x[2] + x[3] * x[3]) / (par[0] * par[0]);
   }
 
   std::vector<std::array<int, 3>> successors(std::array<int, 3>) const { return {{1, 1, 1}}; }
