@@ -57,23 +57,23 @@ bool BranchPointBracket::narrow(const Evaluate& evaluate, PathPoint& trial, doub
   const double change = high_.value - low_.value;
   const double least = std::max({tolerance, reachable, reachable_share * whole});
   double share = smallest_share;
-  double step = whole;
-  double moved = std::numeric_limits<double>::infinity();
+  double moved = whole;
+  double error = std::numeric_limits<double>::infinity();
   int worse = 0;
   Located best;
   for (int round = 0; round < most_rounds; ++round) {
     const double last = zero_;
     zero_ = interpolated_zero();
     if (round > 0) {
-      const double before = std::exchange(step, std::abs(zero_ - last));
-      moved = std::max(step, least_move * before);
+      const double before = std::exchange(moved, std::abs(zero_ - last));
+      error = std::max(moved, least_move * before);
     }
-    if (moved <= best.moved && high_.at - low_.at <= narrow_enough * whole) {
-      best = {moved, zero_, low_, high_};
+    if (error <= best.error && high_.at - low_.at <= narrow_enough * whole) {
+      best = {error, moved, zero_, low_, high_};
       put_zero(trial);
-      if (moved <= tolerance && follower_.solves(trial.orbit)) break;
+      if (error <= tolerance && follower_.solves(trial.orbit)) break;
       worse = 0;
-    } else if (best.moved <= tolerance || (best.moved <= least && ++worse == most_worse)) {
+    } else if (best.error <= tolerance || (best.moved <= least && ++worse == most_worse)) {
       break;
     }
     const double before = high_.at - low_.at;

@@ -76,7 +76,8 @@ class BranchPointBracket {
   double zero_ = 0.0;
   /// A state of the bracket to come back to.
   struct Located {
-    double moved = std::numeric_limits<double>::infinity();  // by the last round
+    double error = std::numeric_limits<double>::infinity();  // of the place, as far as two rounds tell
+    double moved = error;                                    // by the last round
     double zero = 0.0;
     Side low;
     Side high;
