@@ -34,6 +34,19 @@ std::string fault_of(const tchat_problem& table, const tchat_sliding& mode) {
   return "";
 }
 
+std::string fault_of(const tchat_problem& table, const tchat_chatter& mode) {
+  const auto outside = [](int number, int count) { return number < 1 || number > count; };
+  if (outside(mode.field, table.fields) || outside(mode.contact, table.fields))
+    return fmt::format("has the fields {} and {}, there are 1..{}", mode.field, mode.contact, table.fields);
+  if (outside(mode.event, table.events) || outside(mode.release, table.events) || outside(mode.margin, table.events))
+    return fmt::format("has the event functions {}, {} and {}, there are 1..{}", mode.event, mode.release, mode.margin,
+                       table.events);
+  if (outside(mode.impact, table.jumps) || outside(mode.limit, table.jumps) || outside(mode.leave, table.jumps))
+    return fmt::format("has the jumps {}, {} and {}, there are 1..{}", mode.impact, mode.limit, mode.leave,
+                       table.jumps);
+  return "";
+}
+
 std::string name_or(const char* const* names, int count, int k, const char* fallback) {
   if (names != nullptr && k >= 1 && k <= count && names[k - 1] != nullptr) return names[k - 1];
   return fmt::format(fmt::runtime(fallback), k);
@@ -82,6 +95,13 @@ HybridSystem::HybridSystem(const tchat_problem& table, const Scales* scales) : t
   require(
       table.sliding_modes >= 0 && table.sliding_modes <= 1000 && (table.sliding_modes == 0 || table.sliding != nullptr),
       fmt::format("it has {} sliding modes, but its table does not list them", table.sliding_modes));
+  require(
+      table.chatter_modes >= 0 && table.chatter_modes <= 1000 && (table.chatter_modes == 0 || table.chatter != nullptr),
+      fmt::format("it has {} chatter modes, but its table does not list them", table.chatter_modes));
+  for (int k = 0; k < table.chatter_modes; ++k) {
+    const std::string fault = fault_of(table, table.chatter[k]);
+    require(fault.empty(), "a chatter mode of it " + fault);
+  }
   const auto is_dimension = [&](std::int32_t k) { return k >= 1 && k <= table.dimension; };
   require((table.field_dimensions == nullptr) == (table.jump_dimensions == nullptr) || table.jumps == 0,
           "its table gives the dimensions of fields or of jumps, but not both");
@@ -99,6 +119,12 @@ HybridSystem::HybridSystem(const tchat_problem& table, const Scales* scales) : t
 const tchat_sliding* HybridSystem::sliding_mode(int field) const {
   for (const tchat_sliding& mode : sliding_modes())
     if (mode.field == field) return &mode;
+  return nullptr;
+}
+
+const tchat_chatter* HybridSystem::chatter_with_limit(int jump) const {
+  for (int k = 0; k < table_->chatter_modes; ++k)
+    if (table_->chatter[k].limit == jump) return &table_->chatter[k];
   return nullptr;
 }
 

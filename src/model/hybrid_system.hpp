@@ -73,6 +73,8 @@ class HybridSystem {
   }
   /// The mode that a field belongs to; null when it is none that slides.
   const tchat_sliding* sliding_mode(int field) const;
+  /// Of which chatter a jump is the limit, as far as the problem tells; null when it is that of none.
+  const tchat_chatter* chatter_with_limit(int jump) const;
   const tchat_problem& table() const { return *table_; }
 
   /// What a value 1 of state k, from 1, is in the units of its user.

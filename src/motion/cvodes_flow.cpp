@@ -130,9 +130,7 @@ struct CvodesFlow::Implementation {
     CVodeSVtolerances(cvode(), options.relative_tolerance, absolute.get());
   }
 
-  double tolerance_of(int state) const {
-    return options.absolute_tolerance * size_for_tolerance(options.sizes(state));
-  }
+  double tolerance_of(int state) const { return options.absolute_tolerance * size_for_tolerance(options.sizes(state)); }
 
   void start_sensitivities() {
     for (int c = 0; c < columns; ++c) {
@@ -159,8 +157,7 @@ struct CvodesFlow::Implementation {
       const double by = c < n ? options.sizes(c) : std::abs(par(options.active[static_cast<std::size_t>(c - n)] - 1));
       absolute.emplace_back(N_VNew_Serial(n, context.get()), &N_VDestroy);
       pointers.push_back(absolute.back().get());
-      for (int i = 0; i < n; ++i)
-        N_VGetArrayPointer(pointers.back())[i] = tolerance_of(i) / size_for_tolerance(by);
+      for (int i = 0; i < n; ++i) N_VGetArrayPointer(pointers.back())[i] = tolerance_of(i) / size_for_tolerance(by);
     }
     CVodeSensSVtolerances(cvode(), options.relative_tolerance, pointers.data());
   }

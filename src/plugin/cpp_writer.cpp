@@ -45,6 +45,7 @@ class CppWriter {
   CppWriter(const ProblemModel& model, const std::string& class_name) : model_(model) {
     class_ = names_.unique(class_name);
     if (!model.slides.empty()) names_.unique(slides_member);  // hidden by nothing of the user's
+    if (!model.contacts.empty()) names_.unique(contacts_member);
     for (const std::string& state : model.names.states()) cpp_[state] = names_.unique(state);
     for (const Assignment& parameter : model.file.parameters) name(parameter.name);
     for (const Assignment& definition : model.file.definitions) name(definition.name);
@@ -58,7 +59,7 @@ class CppWriter {
         "carries derivatives.\n#include <array>\n#include <cmath>\n#include <tchat/problem.hpp>\n#include "
         "<vector>\n\nstruct {} {{\n",
         origin, class_);
-    text += sizes() + names() + slides() + "\n";
+    text += sizes() + names() + slides() + contacts() + "\n";
     for (const Helper& helper : helpers)
       if (functions.find(helper.use) != std::string::npos) text += std::string(helper.text) + "\n";
     return text + functions + fmt::format("}};\n\nTCHAT_PROBLEM({})\n", class_);
@@ -76,8 +77,9 @@ class CppWriter {
     return fmt::format(
         "  static constexpr int dimension = {}, parameters = {};\n"
         "  static constexpr int fields = {}{}{};\n{}",
-        model_.names.states().size(), model_.parameter_values.size(), model_.fields.size() + model_.slides.size(),
-        count("events", model_.events.size() + 2 * model_.slides.size()), count("jumps", model_.jumps.size()),
+        model_.names.states().size(), model_.parameter_values.size(), field_count(),
+        count("events", model_.events.size() + 2 * (model_.slides.size() + model_.contacts.size())),
+        count("jumps", model_.jumps.size() + 2 * model_.contacts.size()),
         model_.file.modes.empty() ? "" : dimensions());
   }
 
@@ -85,8 +87,9 @@ class CppWriter {
   std::string dimensions() const {
     std::vector<std::size_t> fields, jumps;
     for (const ProblemModel::Field& field : model_.fields) fields.push_back(field.rates.size());
-    fields.resize(model_.fields.size() + model_.slides.size(), model_.names.states().size());
+    fields.resize(field_count(), model_.names.states().size());
     for (const ProblemModel::Jump& jump : model_.jumps) jumps.push_back(jump.states);
+    jumps.resize(model_.jumps.size() + 2 * model_.contacts.size(), model_.names.states().size());
     return fmt::format(
         "  static constexpr int dimension_of(int field) {{\n    constexpr int states[] = {{{}}};\n"
         "    return states[field - 1];\n  }}\n"
@@ -108,6 +111,23 @@ class CppWriter {
     return fmt::format("  static constexpr tchat::Sliding {}[] = {{\n      {}}};\n", slides_member,
                        fmt::join(modes, ",\n      "));
   }
+
+  static constexpr const char* contacts_member = "chatter";
+
+  /// The modes of contact, whose fields, events and jumps tchat makes.
+  std::string contacts() const {
+    if (model_.contacts.empty()) return "";
+    std::vector<std::string> modes;
+    for (const ProblemModel::Contact& c : model_.contacts)
+      modes.push_back(
+          fmt::format("{{.field = {}, .event = {}, .impact = {}, .contact = {}, .release = {}, .limit = "
+                      "{}, .margin = {}, .leave = {}}}",
+                      c.field, c.event, c.impact, c.contact, c.release, c.limit, c.margin, c.leave));
+    return fmt::format("  static constexpr tchat::Chatter {}[] = {{\n      {}}};\n", contacts_member,
+                       fmt::join(modes, ",\n      "));
+  }
+
+  std::size_t field_count() const { return model_.fields.size() + model_.slides.size() + model_.contacts.size(); }
 
   static std::string strings(const char* member, const std::vector<std::string>& texts) {
     if (texts.empty()) return "";
@@ -136,9 +156,14 @@ class CppWriter {
       fields.push_back(slide.name);
       events.insert(events.end(), slide.end_names.begin(), slide.end_names.end());
     }
+    std::vector<std::string> jumps = names_of_parts(model_.jumps);
+    for (const ProblemModel::Contact& contact : model_.contacts) {
+      fields.push_back(contact.name);
+      events.insert(events.end(), {contact.release_name, contact.margin_name});
+      jumps.insert(jumps.end(), {contact.limit_name, contact.leave_name});
+    }
     return strings("state_names", model_.names.states()) + strings("parameter_names", parameters) +
-           strings("field_names", fields) + strings("event_names", events) +
-           strings("jump_names", names_of_parts(model_.jumps)) +
+           strings("field_names", fields) + strings("event_names", events) + strings("jump_names", jumps) +
            numbers("initial_parameters", model_.parameter_values) + numbers("initial_state", model_.initial_state);
   }
 

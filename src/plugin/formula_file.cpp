@@ -9,8 +9,8 @@ namespace tchat::formulas {
 namespace {
 
 const std::vector<std::string>& statement_words() {
-  static const std::vector<std::string> words = {"par",  "init",  "number", "aux",  "field", "event",
-                                                 "jump", "slide", "after",  "mode", "done"};
+  static const std::vector<std::string> words = {"par",  "init",  "number",  "aux",   "field", "event",
+                                                 "jump", "slide", "contact", "after", "mode",  "done"};
   return words;
 }
 
@@ -59,6 +59,7 @@ class StatementReader {
     if (word.is("jump")) return in_.next(), jump(), true;
     if (word.is("mode") && in_.peek(1).is_name()) return in_.next(), mode(), true;
     if (word.is("slide")) return in_.next(), slide(), true;
+    if (word.is("contact")) return in_.next(), contact(), true;
     if (word.is("after")) return in_.next(), successor(word.at), true;
     refuse_unknown(word);
   }
@@ -69,7 +70,7 @@ class StatementReader {
     throw FormulaError{
         word.at, fmt::format("a statement cannot begin with '{}' before {}{}; it is NAME = EXPRESSION, "
                              "STATE' = EXPRESSION, or begins with par, init, number, aux, field, event, "
-                             "jump, mode, slide or after",
+                             "jump, mode, slide, contact or after",
                              word.text.substr(0, 40), shown(in_.peek(1)), did_you_mean(word.text, statement_words()))};
   }
 
@@ -210,6 +211,24 @@ class StatementReader {
     }
     in_.expect_end();
     file_.slides.push_back(std::move(made));
+  }
+
+  void contact() {
+    const std::string form = "it is written 'contact NAME on EVENT until EVENT: FIELD, JUMP -> JUMP'";
+    ContactStatement made;
+    made.name = in_.expect_name("a field");
+    in_.expect("on", form);
+    made.surface = in_.expect_name("an event");
+    in_.expect("until", form);
+    made.release = in_.expect_name("an event");
+    in_.expect(":", form);
+    made.field = in_.expect_name("a field");
+    in_.expect(",", form);
+    made.impact = in_.expect_name("a jump");
+    in_.expect("->", form);
+    made.limit = in_.expect_name("a jump");
+    in_.expect_end();
+    file_.contacts.push_back(std::move(made));
   }
 
   void successor(Position at) {

@@ -50,6 +50,13 @@ struct SlideStatement {
   std::array<std::pair<Token, Token>, 2> ends;  ///< event, field: below, above
 };
 
+/// contact NAME on SURFACE until RELEASE: FIELD, IMPACT -> LIMIT: where impacts in FIELD at SURFACE accumulate, LIMIT
+/// is the jump to contact, in which the field NAME holds until RELEASE. The statement makes NAME, RELEASE, LIMIT, the
+/// event LIMIT_margin and the jump NAME_end (tchat/chatter.hpp).
+struct ContactStatement {
+  Token name, surface, release, field, impact, limit;
+};
+
 /// after FROM... [if CONDITION]: [FIELD until] EVENT -> JUMP, ...
 struct SuccessorLine {
   Position at;
@@ -70,6 +77,7 @@ struct FormulaFile {
   std::vector<Assignment> events;
   std::vector<Block> jumps;
   std::vector<SlideStatement> slides;
+  std::vector<ContactStatement> contacts;
   std::vector<SuccessorLine> successors;
   std::vector<Assignment> user_values;
 };

@@ -174,7 +174,8 @@ struct Build {
   std::vector<BuildInput> known_inputs() const {
     if (language == Language::fortran) return placed(fortran().found);
     std::vector<std::string> files = {fs::absolute(source).string()};
-    for (const char* header : {"dual.hpp", "lanes.hpp", "problem.h", "problem.hpp", "sliding.hpp"})
+    for (const char* header : {"chatter.hpp", "dual.hpp", "gauss_flight.hpp", "impact_flight.hpp", "lanes.hpp",
+                               "problem.h", "problem.hpp", "sliding.hpp"})
       files.push_back(fs::absolute(include_folder).string() + "/tchat/" + header);
     return placed(files);
   }

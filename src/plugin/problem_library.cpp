@@ -270,12 +270,13 @@ const tchat_problem* find_table(const std::string& path, void* handle) {
 }
 
 /// A table made before boundary value problems, sliding modes, many points at once, for first derivatives or for second
-/// ones or side by side, modes of different dimension, or third derivatives, at one point or many, has none of their
-/// members.
+/// ones or side by side, modes of different dimension, third derivatives, at one point or many, or chatter has none of
+/// their members.
 tchat_problem completed(const tchat_problem& table) {
-  const std::array<std::size_t, 8> earlier = {
-      TCHAT_PROBLEM_FIRST_SIZE, TCHAT_PROBLEM_SECOND_SIZE, TCHAT_PROBLEM_THIRD_SIZE,   TCHAT_PROBLEM_FOURTH_SIZE,
-      TCHAT_PROBLEM_FIFTH_SIZE, TCHAT_PROBLEM_SIXTH_SIZE,  TCHAT_PROBLEM_SEVENTH_SIZE, TCHAT_PROBLEM_EIGHTH_SIZE};
+  const std::array<std::size_t, 9> earlier = {
+      TCHAT_PROBLEM_FIRST_SIZE,   TCHAT_PROBLEM_SECOND_SIZE, TCHAT_PROBLEM_THIRD_SIZE,
+      TCHAT_PROBLEM_FOURTH_SIZE,  TCHAT_PROBLEM_FIFTH_SIZE,  TCHAT_PROBLEM_SIXTH_SIZE,
+      TCHAT_PROBLEM_SEVENTH_SIZE, TCHAT_PROBLEM_EIGHTH_SIZE, TCHAT_PROBLEM_NINTH_SIZE};
   if (std::find(earlier.begin(), earlier.end(), table.struct_size) == earlier.end()) return table;
   tchat_problem whole{};
   std::memcpy(&whole, &table, table.struct_size);

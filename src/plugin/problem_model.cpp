@@ -74,6 +74,7 @@ class ModelCheck {
     events();
     slides();
     jumps();
+    contacts();
     user_values();
     successors();
     if (table == nullptr) return;
@@ -324,14 +325,52 @@ class ModelCheck {
     return field;
   }
 
-  /// What a sliding mode is made of is not made by one itself.
+  /// What a sliding mode or contact is made of is not made by one itself.
   static int own_part(int number, std::size_t own, const Token& name) {
     if (static_cast<std::size_t>(number) > own)
       throw FormulaError{name.at,
-                         fmt::format("'{}' is made by a slide statement; a surface and the fields on its sides "
-                                     "have formulas of their own",
+                         fmt::format("'{}' is made by a slide or contact statement; surfaces, the fields beside them "
+                                     "and impacts have formulas of their own",
                                      name.text)};
     return number;
+  }
+
+  /// A name of one more thing that a statement makes.
+  static Token with_ending(Token name, const char* ending) {
+    name.text += ending;
+    return name;
+  }
+  /// The event function that says how far chatter is from being incomplete.
+  static Token margin_of(const ContactStatement& contact) { return with_ending(contact.limit, "_margin"); }
+  /// The jump after contact.
+  static Token end_of(const ContactStatement& contact) { return with_ending(contact.name, "_end"); }
+
+  /// What contact statements make, behind all else.
+  void contacts() {
+    const std::size_t own_fields = model_.fields.size(), own_events = model_.events.size();
+    const std::size_t own_jumps = model_.jumps.size();
+    if (!file().contacts.empty() && file().fields.empty())
+      field_names_.add({Token::Kind::name, model_.fields.front().name, 0.0, {}});
+    for (const ContactStatement& contact : file().contacts)
+      collect([&] {
+        field_names_.add(contact.name);
+        event_names_.add(contact.release);
+        jump_names_.add(contact.limit);
+        event_names_.add(margin_of(contact));
+        jump_names_.add(end_of(contact));
+      });
+    for (const ContactStatement& contact : file().contacts)
+      collect([&] {
+        const int field = own_part(field_number(contact.field), own_fields, contact.field);
+        const Token margin = margin_of(contact), end = end_of(contact);
+        model_.contacts.push_back({contact.name.text, contact.release.text, contact.limit.text, margin.text, end.text,
+                                   with_all_states(field, contact.field),
+                                   own_part(event_names_.required(contact.surface), own_events, contact.surface),
+                                   own_part(jump_names_.required(contact.impact), own_jumps, contact.impact),
+                                   field_names_.number(contact.name.text), event_names_.number(contact.release.text),
+                                   jump_names_.number(contact.limit.text), event_names_.number(margin.text),
+                                   jump_names_.number(end.text)});
+      });
   }
 
   void jumps() {
@@ -403,6 +442,7 @@ class ModelCheck {
     return made;
   }
 
+  /// Without those of contact, to which the limits of chatter lead and no line needs to.
   std::size_t field_count() const { return model_.fields.size() + model_.slides.size(); }
 
   ProblemModel::Following following(const std::string& field, Position at) const {
@@ -469,6 +509,7 @@ class ModelCheck {
   void require_complete() {
     std::set<std::array<int, 3>> all = {{0, 0, 0}};
     for (const auto& rule : model_.successors) all.insert(rule.next.begin(), rule.next.end());
+    for (const auto& contact : model_.contacts) all.insert({contact.contact, contact.release, contact.leave});
     for (const std::array<int, 3>& from : all) {
       const auto follows = [&](const ProblemModel::SuccessorRule& rule) { return matches(rule, from); };
       if (std::none_of(model_.successors.begin(), model_.successors.end(), follows))
@@ -498,8 +539,8 @@ class ModelCheck {
   std::string in_words_of(const std::array<int, 3>& from) const {
     if (from[0] == 0) return "the start";
     const auto at = [&](std::size_t k) { return static_cast<std::size_t>(from[k] - 1); };
-    return fmt::format("{} -> {}{}", event_names_.all()[at(1)], model_.jumps[at(2)].name,
-                       field_count() > 1 ? " of field " + field_name(at(0)) : "");
+    return fmt::format("{} -> {}{}", event_names_.all()[at(1)], jump_names_.all()[at(2)],
+                       field_count() > 1 || at(0) > 0 ? " of field " + field_names_.all()[at(0)] : "");
   }
 
   std::string after_words(const std::array<int, 3>& from) const {
@@ -551,7 +592,7 @@ class ModelCheck {
 
 ProblemModel check_formulas(FormulaFile file, FormulaErrors& errors) {
   NameTable names(file, errors);
-  ProblemModel model{std::move(file), std::move(names), {}, {}, {}, {}, {}, {}, {}, {}, {}};
+  ProblemModel model{std::move(file), std::move(names), {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
   ModelCheck(model, errors).all();
   return model;
 }

@@ -31,6 +31,11 @@ struct ProblemModel {
     std::array<std::string, 2> end_names;
     int field, minus, plus, surface, to_minus, to_plus;
   };
+  /// A mode of contact after chatter (tchat::Chatter), numbers from 1: what it makes counts behind all others.
+  struct Contact {
+    std::string name, release_name, limit_name, margin_name, leave_name;
+    int field, event, impact, contact, release, limit, margin, leave;
+  };
   /// Which field follows at a surface, by a sliding mode (from 0).
   struct Following {
     std::size_t slide;
@@ -53,6 +58,7 @@ struct ProblemModel {
   std::vector<Function> events;
   std::vector<Slide> slides;
   std::vector<Jump> jumps;
+  std::vector<Contact> contacts;
   std::vector<Function> user_values;
   std::vector<SuccessorRule> successors;
   std::vector<FormulaError> remarks;  ///< no mistakes, but things to know

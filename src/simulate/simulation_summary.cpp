@@ -270,10 +270,11 @@ std::string orbit_text(const HybridSystem& system, const FoundOrbit& orbit) {
   for (std::size_t s = 0; s < orbit.signature.size(); ++s) {
     const IndexVector& v = orbit.signature[s];
     const MapSegment& segment = orbit.map.segments[s];
-    text += fmt::format("  segment {}: {}, {} for {:.13g} until {}, h_x f = {:.10g}, then {}\n", s + 1, index_text(v),
+    text += fmt::format("  segment {}: {}, {} for {:.13g} until {}, h_x f = {:.10g}, then {}{}\n", s + 1, index_text(v),
                         system.function_name(FunctionKind::field, v.field), segment.duration,
                         system.function_name(FunctionKind::event, v.event), segment.event_velocity,
-                        system.function_name(FunctionKind::jump, v.jump));
+                        system.function_name(FunctionKind::jump, v.jump),
+                        system.chatter_with_limit(v.jump) != nullptr ? " (infinitely many impacts)" : "");
   }
   text += "  start";
   // Of the largest state 13 digits are shown; what is smaller than the last of them is rounding.

@@ -109,15 +109,23 @@ SpecialPoint RuleTest::classify(const TestedPoint& point, bool rising) const {
   const IndexVector& from = system_.signature()[static_cast<std::size_t>(segment_)];
   const int next = (segment_ + 1) % system_.segments();
   const IndexVector& to = system_.signature()[static_cast<std::size_t>(next)];
-  return {
-      PointType::user,
-      {UserPointKind::rule, segment_ + 1, from.event, 1.0},
-      stop_ && !rising,
-      fmt::format("the rules of the model change at the end of segment {} (event {}, {}): on one side of this point "
-                  "jump {} ({}) ends segment {}, on the other side it is another one, {}",
-                  segment_ + 1, from.event, system.function_name(FunctionKind::event, from.event), to.jump,
-                  system.function_name(FunctionKind::jump, to.jump), next + 1,
-                  state_text(system, point.orbit, point.orbit.end(segment_)))};
+  const tchat_chatter* const chatter = system.chatter_with_limit(to.jump);
+  const bool ends_chatter = chatter != nullptr && from == IndexVector{chatter->field, chatter->event, chatter->impact};
+  const std::string event =
+      fmt::format("(event {}, {})", from.event, system.function_name(FunctionKind::event, from.event));
+  const std::string change =
+      ends_chatter ? fmt::format(
+                         "chatter becomes incomplete: on one side of this point the impacts from the end of segment {} "
+                         "{} on do not accumulate",
+                         next + 1, event)
+                   : fmt::format(
+                         "the rules of the model change at the end of segment {} {}: on one side of this point jump {} "
+                         "({}) ends segment {}, on the other side it is another one",
+                         segment_ + 1, event, to.jump, system.function_name(FunctionKind::jump, to.jump), next + 1);
+  return {PointType::user,
+          {UserPointKind::rule, segment_ + 1, from.event, 1.0},
+          stop_ && !rising,
+          fmt::format("{}, {}", change, state_text(system, point.orbit, point.orbit.end(segment_)))};
 }
 
 namespace {

@@ -124,7 +124,7 @@ TEST_CASE("sliding: fields and events that are not there, are made twice, or lie
   says("slide stuck on falls: falls -> down, lets_up -> up", "7:23", "two events with the name 'falls'");
   says("slide up on falls: lets_down -> down, lets_up -> up", "7:7", "two fields with the name 'up'");
   says("slide stuck on falls: lets_down -> down, lets_up -> up\nslide more on rises: a -> stuck, b -> down", "8:27",
-       "'stuck' is made by a slide statement");
+       "'stuck' is made by a slide or contact statement");
   const std::string two =
       "slide stuck on falls: lets_down -> down, lets_up -> up\nslide held on rises: a -> up, b -> down\n";
   says(two + "after any if up: up until falls -> identity", "9:14", "the field up is a side of 2 surfaces");

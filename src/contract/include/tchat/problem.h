@@ -47,6 +47,21 @@ typedef struct tchat_sliding {
   int32_t to_plus;
 } tchat_sliding;
 
+/* Chatter, infinitely many impacts in finite time, as one jump: impacts with the jump `impact` at event function
+ * `event` in the field `field` may accumulate. Then the jump `limit` leads to contact, with the field `contact` until
+ * event function `release`, and from there the jump `leave` back to `field`. Before an impact the event function
+ * `margin` is zero where chatter becomes incomplete, and positive where it is complete. All count from 1. */
+typedef struct tchat_chatter {
+  int32_t field;
+  int32_t event;
+  int32_t impact;
+  int32_t contact;
+  int32_t release;
+  int32_t limit;
+  int32_t margin;
+  int32_t leave;
+} tchat_chatter;
+
 typedef struct tchat_problem {
   uint32_t abi_version; /* TCHAT_PROBLEM_ABI */
   uint32_t struct_size; /* sizeof(tchat_problem) */
@@ -169,6 +184,11 @@ typedef struct tchat_problem {
    * `third` for each. */
   void (*third_at_points)(const void* self, int32_t kind, int32_t index, int32_t points, const double* x,
                           const double* par, double* out);
+
+  /* Which functions are those of chatter: `chatter_modes` modes. The functions themselves are `value`'s, and what
+   * follows what `successors` says; this tells what they are. 0 and NULL: none, or not told. */
+  int32_t chatter_modes;
+  const tchat_chatter* chatter;
 } tchat_problem;
 
 /* Size of the table before the conditions of boundary value problems were added: such a table has none. */
@@ -187,6 +207,8 @@ typedef struct tchat_problem {
 #define TCHAT_PROBLEM_SEVENTH_SIZE offsetof(tchat_problem, third)
 /* And before these could be asked for at many points. */
 #define TCHAT_PROBLEM_EIGHTH_SIZE offsetof(tchat_problem, third_at_points)
+/* And before it told of chatter. */
+#define TCHAT_PROBLEM_NINTH_SIZE offsetof(tchat_problem, chatter_modes)
 
 typedef const tchat_problem* (*tchat_problem_entry)(void);
 #define TCHAT_PROBLEM_ENTRY "tchat_problem_table"

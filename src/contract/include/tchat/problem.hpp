@@ -41,6 +41,11 @@
 ///     // event functions 3 and 4, where it ends, are made by tchat (tchat/sliding.hpp)
 ///     static constexpr tchat::Sliding sliding{.field = 3, .minus = 2, .plus = 1, .surface = 1, .to_minus = 3,
 ///                                             .to_plus = 4};
+///     // impacts of jump 1 at event 1 in field 1 that may accumulate: field 2 in contact, event function 2, where that
+///     // ends, jump 3, the limit of infinitely many impacts, event function 3, zero where these cease to have one, and
+///     // jump 4, after contact, are made by tchat (tchat/chatter.hpp)
+///     static constexpr tchat::Chatter chatter{.field = 1, .event = 1, .impact = 1, .contact = 2, .release = 2,
+///                                             .limit = 3, .margin = 3, .leave = 4};
 ///     // modes of different dimension: field i has the states x[0] .. x[dimension_of(i) - 1] and sets as many, jump k
 ///     // leads to a mode of dimension_after(k) states and sets these. `dimension` is the largest:
 ///     static constexpr int dimension_of(int i) { return i == 1 ? 4 : 5; }
@@ -58,6 +63,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "tchat/chatter.hpp"
 #include "tchat/dual.hpp"
 #include "tchat/problem.h"
 #include "tchat/sliding.hpp"
@@ -291,6 +297,37 @@ class ProblemTable {
     return nullptr;
   }
 
+  static constexpr auto chatter = chatter_modes_of<Problem>();
+  static_assert(chatter_fault(chatter, Problem::fields, event_count(), jump_count()) != ChatterFault::field_range,
+                "tchat: `chatter`: field and contact must be numbers from 1 to `fields`");
+  static_assert(chatter_fault(chatter, Problem::fields, event_count(), jump_count()) != ChatterFault::event_range,
+                "tchat: `chatter`: event, release and margin must be numbers from 1 to `events`");
+  static_assert(chatter_fault(chatter, Problem::fields, event_count(), jump_count()) != ChatterFault::jump_range,
+                "tchat: `chatter`: impact, limit and leave must be numbers from 1 to `jumps`");
+  static_assert(chatter_fault(chatter, Problem::fields, event_count(), jump_count()) != ChatterFault::made_of_itself,
+                "tchat: `chatter`: contact, release, limit, margin and leave must be functions of their own, which no "
+                "mode is made of");
+
+  /// The chatter mode that makes a function; null for the problem's own ones.
+  static const Chatter* chatter_of(std::int32_t kind, int index) {
+    for (const Chatter& mode : chatter)
+      if ((kind == TCHAT_FIELD && index == mode.contact) ||
+          (kind == TCHAT_JUMP && (index == mode.limit || index == mode.leave)) ||
+          (kind == TCHAT_EVENT && (index == mode.release || index == mode.margin)))
+        return &mode;
+    return nullptr;
+  }
+
+  template <class T>
+  static void evaluate_chatter(const Problem& problem, const Chatter& mode, std::int32_t kind, int index, const T* x,
+                               const T* par, T* out) {
+    const ChatterFunctions functions(problem, mode);
+    if (kind == TCHAT_FIELD) functions.contact(x, par, out);
+    if (kind == TCHAT_EVENT) out[0] = index == mode.release ? functions.release(x, par) : functions.margin(x, par);
+    if (kind == TCHAT_JUMP && index == mode.limit) functions.limit(x, par, out);
+    if (kind == TCHAT_JUMP && index == mode.leave) functions.leave(x, par, out);
+  }
+
   /// F(x, par), rows preset to NaN by the caller. A problem may throw where it cannot be evaluated: the callers are C
   /// code, so the exception ends here as NaN. Compiled once for each kind of numbers.
   template <class T>
@@ -303,6 +340,10 @@ class ProblemTable {
           if (kind == TCHAT_FIELD) sliding_field(problem, *mode, x, par, out);
           if (kind == TCHAT_EVENT) out[0] = sliding_end(problem, *mode, index, x, par);
         }
+        return;
+      }
+      if (const Chatter* const mode = chatter_of(kind, index)) {
+        if constexpr (!chatter.empty()) evaluate_chatter(problem, *mode, kind, index, x, par, out);
         return;
       }
       if (kind == TCHAT_FIELD) problem.field(index, x, par, out);
@@ -658,7 +699,7 @@ class ProblemTable {
     std::array<double, static_cast<std::size_t>(n * (q > 0 ? q : 1))> all{};
     const Problem& problem = object(self);
     bool given = false;
-    if (mode_of(kind, index) != nullptr) return false;
+    if (mode_of(kind, index) != nullptr || chatter_of(kind, index) != nullptr) return false;
     fill(dx, rows(kind) * n, 0.0);
     if constexpr (requires { problem.field_derivatives(index, x, par, dx, dp); })
       if (kind == TCHAT_FIELD) problem.field_derivatives(index, x, par, dx, all.data()), given = true;
@@ -787,6 +828,8 @@ class ProblemTable {
         next = object(self).successors(last, x);
       else if constexpr (successors_alone)
         next = object(self).successors(last);
+      if constexpr (!chatter.empty())
+        for (const Chatter& mode : chatter) allow_limit(object(self), mode, last, x, par, next);
       for (const auto& index_vector : next) {
         if (count < capacity)
           for (int k = 0; k < 3; ++k) to[3 * count + k] = index_vector[static_cast<std::size_t>(k)];
@@ -796,6 +839,22 @@ class ProblemTable {
       return -1;
     }
     return count;
+  }
+
+  /// After an impact from which on they accumulate, the next one may be the limit of all; it is where they are near
+  /// that. After it comes contact.
+  static void allow_limit(const Problem& problem, const Chatter& mode, const std::array<int, 3>& from, const double* x,
+                          const double* par, IndexVectors& next) {
+    const std::array<int, 3> impact{mode.field, mode.event, mode.impact};
+    const std::array<int, 3> limit{mode.field, mode.event, mode.limit};
+    if (from == limit) next = {{mode.contact, mode.release, mode.leave}};
+    if (from != impact) return;
+    const int before = ChatterFunctions(problem, mode).impacts_before_limit(x, par);
+    for (std::size_t k = 0; k < next.size() && before >= 0; ++k) {
+      if (next[k] != impact) continue;
+      next.insert(next.begin() + static_cast<std::ptrdiff_t>(before == 0 ? k : k + 1), limit);
+      return;
+    }
   }
 
   static void user_value(const void* self, const double* x, const double* par, double* out) {
@@ -835,6 +894,8 @@ class ProblemTable {
     }
     table.sliding_modes = static_cast<std::int32_t>(modes.size());
     if constexpr (!modes.empty()) table.sliding = modes.data();
+    table.chatter_modes = static_cast<std::int32_t>(chatter.size());
+    if constexpr (!chatter.empty()) table.chatter = chatter.data();
     if constexpr (has_successors) table.successors = &successors;
     if constexpr (requires { Problem::user_values; }) table.user_values = Problem::user_values;
 

@@ -1,0 +1,354 @@
+/// Complete chatter, infinitely many impacts in finite time, as one jump; for problem authors: included by
+/// tchat/problem.hpp.
+///
+/// Impacts g at the surface h = 0 of an event function, in a field f that presses the orbit against it, can accumulate
+/// at C = {h = 0, v = 0}, v = h_x f, where the orbit rests on the surface: where a = v_x f < 0, where g leaves C as it
+/// is, and where the restitution r = -v_x g_x d is between 0 and 1, d any direction with h_x d = 0 and v_x d = 1. A
+/// class that says which impacts may,
+///
+///     static constexpr tchat::Chatter chatter{.field = 1, .event = 1, .impact = 1, .contact = 2, .release = 2,
+///                                             .limit = 3, .margin = 3, .leave = 4};
+///
+/// has more functions: as field 2 the motion in contact, as event function 2 -a, where contact ends, as jump 3 the
+/// limit of all impacts from one on, and as event function 3 a margin, which is zero where there is no limit any more.
+/// Jump 4, with which field 1 goes on after contact, puts back on C what integration has left beside it. `fields`,
+/// `events` and `jumps` count them; field(), event() and jump() are then called with the other ones only.
+///
+/// In contact the field is f less what the kicks of impacts take away,
+///
+///     f - a b,      b = k / (v_x k),      k = g_x d - d,      so that h and v stay zero on C.
+///
+/// The limit. States before impacts that follow each other lie on a smooth curve x = X(v): C consists of fixed points
+/// of the map from one to the next, whose other multiplier is r (A. B. Nordmark, P. T. Piiroinen, Nonlinear Dynamics 58
+/// (2009) 85-106). The polynomial through impacts 0, s, 2 s, ..., 8 s, with r^s <= 1/2, is extrapolated to v = 0, and
+/// the time with it. From there the motion in contact is followed back by that time: the jump itself lasts no time, and
+/// where contact begins the last impacts are still to come. Periods, phases and what follows are those of all impacts.
+/// Derivatives are those of this formula, which is computed with dual numbers, the places v of the nodes included.
+///
+/// Where h''' = -j is constant, chatter is complete if u = r |v| j / a^2 falls from impact to impact, and it is not
+/// where u is above c(r): release comes first. Impacts below 0.3 c are near their limit; those before them belong to
+/// the jump as well. The margin is c - u, extrapolated over some impacts to a = 0.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "tchat/dual.hpp"
+#include "tchat/impact_flight.hpp"
+#include "tchat/problem.h"
+#include "tchat/sliding.hpp"
+
+namespace tchat {
+
+/// Which functions chatter is made of, `field`, `event` and `impact`, and which it adds.
+using Chatter = ::tchat_chatter;
+
+/// The chatter modes of a problem class, as an array.
+template <class Problem>
+constexpr auto chatter_modes_of() {
+  if constexpr (requires { Problem::chatter; }) {
+    if constexpr (std::is_array_v<std::remove_cvref_t<decltype(Problem::chatter)>>)
+      return std::to_array(Problem::chatter);
+    else
+      return std::array<Chatter, 1>{Problem::chatter};
+  } else {
+    return std::array<Chatter, 0>{};
+  }
+}
+
+/// What is wrong with the numbers of chatter modes.
+enum class ChatterFault { none, field_range, event_range, jump_range, made_of_itself };
+
+/// The first fault of a range of modes in a problem of so many functions.
+template <class Modes>
+constexpr ChatterFault chatter_fault(const Modes& modes, int fields, int events, int jumps) {
+  const auto outside = [](int number, int count) { return number < 1 || number > count; };
+  for (const Chatter& mode : modes) {
+    if (outside(mode.field, fields) || outside(mode.contact, fields)) return ChatterFault::field_range;
+    if (outside(mode.event, events) || outside(mode.release, events) || outside(mode.margin, events))
+      return ChatterFault::event_range;
+    if (outside(mode.impact, jumps) || outside(mode.limit, jumps) || outside(mode.leave, jumps))
+      return ChatterFault::jump_range;
+  }
+  for (const Chatter& a : modes)
+    for (const Chatter& b : modes)
+      if (a.field == b.contact || a.event == b.release || a.event == b.margin || a.impact == b.limit ||
+          a.impact == b.leave || a.limit == b.leave)
+        return ChatterFault::made_of_itself;
+  return ChatterFault::none;
+}
+
+/// The functions that chatter makes, for a problem class. All are for numbers T, double or dual.
+template <class Problem>
+class ChatterFunctions : ImpactFlights<Problem> {
+  using Base = ImpactFlights<Problem>;
+  using Base::n;
+  template <class T>
+  using State = typename Base::template State<T>;
+  using typename Base::Acceleration;
+  using typename Base::Point;
+  using typename Base::Rate;
+
+ public:
+  ChatterFunctions(const Problem& problem, const Chatter& mode) : Base(problem, mode) {}
+
+  /// The field in contact.
+  template <class T>
+  void contact(const T* x, const T* par, T* out) const {
+    const State<T> f = field(x, par);
+    const T a = this->template along<T>(f.data(), x, par, Rate{});
+    const State<T> d = direction(x, par);
+    State<T> kick = this->along_jump(d.data(), x, par);
+    for (std::size_t i = 0; i < n; ++i) kick[i] -= d[i];
+    const T change = this->template along<T>(kick.data(), x, par, Rate{});
+    for (std::size_t i = 0; i < n; ++i) out[i] = f[i] - a / change * kick[i];
+  }
+
+  /// -a.
+  template <class T>
+  T release(const T* x, const T* par) const {
+    return -acceleration(x, par);
+  }
+
+  /// The state on C next to x: one step of Newton's method in two states, by which h and v can be set.
+  template <class T>
+  void leave(const T* x, const T* par, T* out) const {
+    const auto at = this->set_by_pair(x, par);
+    for (std::size_t i = 0; i < n; ++i) out[i] = x[i];
+    out[at.pair[0]] -= (at.h.value * at.v.derivative[1] - at.v.value * at.h.derivative[1]) / at.determinant;
+    out[at.pair[1]] -= (at.v.value * at.h.derivative[0] - at.h.value * at.v.derivative[0]) / at.determinant;
+  }
+
+  /// Where all impacts from the one at x on lead to, and how long they take. Where they do not accumulate, a
+  /// continuation of that past the border.
+  template <class T>
+  struct Rest {
+    State<T> state;
+    T time;
+  };
+  template <class T>
+  Rest<T> rest(const T* x, const T* par) const {
+    return extrapolated(nodes_of(impacts_from(x, par)));
+  }
+
+  /// Where contact would have been at the time of the impact at x.
+  template <class T>
+  void limit(const T* x, const T* par, T* out) const {
+    const Rest<T> last = rest(x, par);
+    const State<T> start = back_in_contact(last.state, last.time, par);
+    for (std::size_t i = 0; i < n; ++i) out[i] = start[i];
+  }
+
+  /// c(r) - u of the impacts from x on, extrapolated to a = 0: zero where chatter becomes incomplete, and positive
+  /// where it is complete. Where u falls soon it is that of the last impact. Not there where impacts come to an end.
+  template <class T>
+  T margin(const T* x, const T* par) const {
+    const Point at = numbers(x, par);
+    const int last = impacts_to_border(restitution(at.x.data(), at.par.data())), first = last - 4;
+    std::vector<T> places, values;
+    State<T> here;
+    for (std::size_t i = 0; i < n; ++i) here[i] = x[i];
+    T time(0.0);
+    bool is_far = false;
+    for (int k = 0; k <= last && !is_far; ++k) {
+      if (k > 0 && !fly(jump(here.data(), par), par, here, time)) throw NoValue("the impacts come to an end");
+      const State<T> f = field(here.data(), par);
+      const T a = acceleration(here.data(), par),
+              jerk = this->template along<T>(f.data(), here.data(), par, Acceleration{});
+      const T r = restitution(here.data(), par), c = border(r);
+      const T u = -r * rate(here.data(), par) * jerk / (a * a);
+      is_far = k >= first && plain(u) <= near_enough * plain(c);
+      if (k < first) continue;
+      places.push_back(a / jerk);
+      values.push_back(c - u);
+    }
+    if (is_far) return values.back();
+    for (std::size_t level = 1; level < values.size(); ++level)
+      for (std::size_t i = 0; i + level < values.size(); ++i)
+        values[i] += places[i] / (places[i] - places[i + level]) * (values[i + 1] - values[i]);
+    return values[0];
+  }
+
+  /// How many impacts there are before those that are near their limit, the one at x included: none is 0. Negative
+  /// where impacts do not accumulate.
+  int impacts_before_limit(const double* x, const double* par) const {
+    const Impacts<double> impacts = impacts_from(x, par);
+    return impacts.is_complete ? impacts.near : -1;
+  }
+
+ private:
+  using Base::acceleration;
+  using Base::direction;
+  using Base::field;
+  using Base::fly;
+  using Base::jump;
+  using Base::numbers;
+  using Base::rate;
+  using Base::restitution;
+
+  static constexpr std::size_t orders = 8;
+  static constexpr int most_impacts = 200;    // before those near the limit
+  static constexpr double near_enough = 0.3;  // of c(r)
+
+  /// What is known before an impact.
+  template <class T>
+  struct Impact {
+    T v;
+    State<T> state;
+    T time;
+  };
+  template <class T>
+  struct Impacts {
+    std::vector<Impact<T>> list;
+    int near = 0;   // the first from which on all are near the limit
+    int apart = 1;  // s
+    bool is_complete = false;
+  };
+
+  /// u / c(r): infinite where a is not negative.
+  double share_of_border(const Point& at, double r) const {
+    const double a = acceleration(at.x.data(), at.par.data());
+    if (!(a < 0.0)) return HUGE_VAL;
+    const State<double> f = field(at.x.data(), at.par.data());
+    const double jerk = this->template along<double>(f.data(), at.x.data(), at.par.data(), Acceleration{});
+    return std::fabs(r * rate(at.x.data(), at.par.data()) * jerk) / (a * a * border(r));
+  }
+
+  /// The root in (0, 1) of kappa^3 + 2 kappa^2 - 2 r kappa - r: on the border a falls by this from impact to impact.
+  template <class T>
+  static T ratio_at_border(const T& r) {
+    constexpr int enough = 8;  // for numbers, from the root at r = 1
+    T kappa(1.0);
+    for (int k = 0; k < enough + derivative_depth<T>; ++k)
+      kappa -= (((kappa + 2.0) * kappa - 2.0 * r) * kappa - r) / ((3.0 * kappa + 4.0) * kappa - 2.0 * r);
+    return kappa;
+  }
+
+  /// c(r) = (3 sigma - sigma^2) / 6 with sigma = 1 - kappa.
+  template <class T>
+  static T border(const T& r) {
+    const T sigma = 1.0 - ratio_at_border(r);
+    return (3.0 - sigma) * sigma / 6.0;
+  }
+
+  /// As many as a falls to a small part in, so that v, which falls by its square, is not yet rounding.
+  static int impacts_to_border(double r) {
+    constexpr int least = 6, most = 40;
+    constexpr double part = 0.01;
+    const double count = std::ceil(std::log(part) / std::log(ratio_at_border(r)));
+    return count < least ? least : count > most ? most : static_cast<int>(count);
+  }
+
+  /// All that are needed: those that are not near the limit, and 8 s + 1 that are, or fewer where v is as small as
+  /// rounding; or those up to where there is no further one.
+  template <class T>
+  Impacts<T> impacts_from(const T* x, const T* par) const {
+    const Point at = numbers(x, par);
+    const double r = restitution(at.x.data(), at.par.data());
+    if (!(r > 0.0 && r < 1.0)) throw NoValue("impacts accumulate where their restitution is between 0 and 1 only");
+    Impacts<T> impacts;
+    impacts.apart = static_cast<int>(std::ceil(std::log(0.5) / std::log(r)));
+    State<T> here;
+    for (std::size_t i = 0; i < n; ++i) here[i] = x[i];
+    T time(0.0);
+    constexpr double tiny = 1e-8;
+    const int needed = static_cast<int>(orders) * impacts.apart + 1;
+    for (int k = 0; !impacts.is_complete && impacts.near <= most_impacts; ++k) {
+      impacts.list.push_back({rate(here.data(), par), here, time});
+      if (share_of_border(numbers(here.data(), par), r) > near_enough) impacts.near = k + 1;
+      impacts.is_complete = k + 1 - impacts.near == needed;
+      if (impacts.is_complete || fly(jump(here.data(), par), par, here, time)) continue;
+      const bool is_rounding = std::fabs(plain(impacts.list.back().v)) <= tiny * std::fabs(plain(impacts.list[0].v));
+      impacts.is_complete = is_rounding && impacts.near <= k;
+      break;
+    }
+    return impacts;
+  }
+
+  /// The nodes of the extrapolation, the last ones first. Of incomplete chatter the last impacts that there are.
+  template <class T>
+  static std::vector<Impact<T>> nodes_of(const Impacts<T>& impacts) {
+    const int count = static_cast<int>(impacts.list.size());
+    if (!impacts.is_complete && count < 2) throw NoValue("the impacts do not accumulate");
+    const int apart = impacts.is_complete ? impacts.apart : 1, least = impacts.is_complete ? impacts.near : 0;
+    std::vector<Impact<T>> nodes;
+    for (int k = count - 1; k >= least && nodes.size() <= orders; k -= apart)
+      nodes.push_back(impacts.list[static_cast<std::size_t>(k)]);
+    return nodes;
+  }
+
+  /// By Neville's scheme at v = 0.
+  template <class T>
+  static Rest<T> extrapolated(std::vector<Impact<T>> nodes) {
+    for (std::size_t level = 1; level < nodes.size(); ++level)
+      for (std::size_t i = 0; i + level < nodes.size(); ++i) {
+        const Impact<T>& other = nodes[i + 1];
+        const T share = nodes[i].v / (nodes[i].v - nodes[i + level].v);
+        for (std::size_t k = 0; k < n; ++k) nodes[i].state[k] += share * (other.state[k] - nodes[i].state[k]);
+        nodes[i].time += share * (other.time - nodes[i].time);
+      }
+    return {nodes.front().state, nodes.front().time};
+  }
+
+  /// The state that the motion in contact has had this time ago, in as many equal parts as numbers need.
+  template <class T>
+  State<T> back_in_contact(const State<T>& x, const T& time, const T* par) const {
+    constexpr int most_parts = 64;
+    constexpr double accurate = 1e-13;
+    const Point from = numbers(x.data(), par);
+    int parts = 1;
+    for (bool is_accurate = false; !is_accurate && parts < most_parts; parts *= is_accurate ? 1 : 2) {
+      is_accurate = true;
+      State<double> y = from.x, error;
+      for (int k = 0; k < parts; ++k) {
+        const State<double> before = y;
+        y = part_back(y, plain(time) / parts, from.par.data(), error);
+        for (std::size_t i = 0; i < n; ++i)
+          is_accurate = is_accurate && error[i] <= accurate * (std::fabs(before[i]) + std::fabs(y[i] - before[i]));
+      }
+    }
+    State<T> y = x;
+    State<double> error;
+    for (int k = 0; k < parts; ++k) y = part_back(y, time / static_cast<double>(parts), par, error);
+    return y;
+  }
+
+  /// Gragg's method, of whose steps the errors are even powers, extrapolated. `error`: the last change.
+  template <class T>
+  State<T> part_back(const State<T>& x, const T& time, const T* par, State<double>& error) const {
+    constexpr std::size_t levels = 7;
+    std::array<State<T>, levels> table;
+    for (std::size_t level = 0; level < levels; ++level) {
+      table[level] = midpoint_steps(x, time, par, 2 * (static_cast<int>(level) + 1));
+      for (std::size_t m = level; m-- > 0;) {
+        const double ratio = static_cast<double>(level + 1) / static_cast<double>(m + 1);
+        for (std::size_t i = 0; i < n; ++i)
+          table[m][i] = table[m + 1][i] + (table[m + 1][i] - table[m][i]) / (ratio * ratio - 1.0);
+      }
+    }
+    for (std::size_t i = 0; i < n; ++i) error[i] = std::fabs(plain(table[0][i] - table[1][i]));
+    return table[0];
+  }
+
+  template <class T>
+  State<T> midpoint_steps(const State<T>& x, const T& time, const T* par, int steps) const {
+    const T h = -time / static_cast<double>(steps);
+    State<T> before = x, here = x, f;
+    contact(x.data(), par, f.data());
+    for (std::size_t i = 0; i < n; ++i) here[i] += h * f[i];
+    for (int k = 1; k < steps; ++k) {
+      contact(here.data(), par, f.data());
+      for (std::size_t i = 0; i < n; ++i) before[i] += 2.0 * h * f[i];
+      std::swap(before, here);
+    }
+    contact(here.data(), par, f.data());
+    for (std::size_t i = 0; i < n; ++i) here[i] = 0.5 * (before[i] + here[i] + h * f[i]);
+    return here;
+  }
+};
+
+}  // namespace tchat

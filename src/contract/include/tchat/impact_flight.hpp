@@ -1,0 +1,324 @@
+/// How impacts follow each other: directional derivatives of a problem's functions at an event surface, and flights
+/// from one impact to the next. Included by tchat/chatter.hpp.
+///
+/// A flight has the time t as an unknown. In place of h = 0 at its end, with its other root t = 0, stands
+/// h / t = sum_i b_i v(X_i) = 0 over the Gauss points, v = h_x f. Newton's method solves it for numbers; as many more
+/// steps with the same matrix as derivatives are nested solve it for these.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "tchat/dual.hpp"
+#include "tchat/gauss_flight.hpp"
+#include "tchat/problem.h"
+
+namespace tchat {
+
+/// How many times derivatives are nested in a kind of numbers.
+template <class T>
+constexpr int derivative_depth = 0;
+template <int N, class B>
+constexpr int derivative_depth<Dual<N, B>> = 1 + derivative_depth<B>;
+
+/// The value in the first lane: what is decided by it must not matter in others, or be asked for with plain() as well.
+inline double first_lane(double a) { return a; }
+inline double first_lane(const Lanes& a) { return a.lane(0); }
+template <int N, class B>
+double first_lane(const Dual<N, B>& a) {
+  return first_lane(a.value);
+}
+
+/// For the impacts of a chatter mode. All functions are for numbers T, double or dual.
+template <class Problem>
+class ImpactFlights {
+ public:
+  static constexpr auto n = static_cast<std::size_t>(Problem::dimension);
+  static constexpr auto q = static_cast<std::size_t>(Problem::parameters);
+  template <class T>
+  using State = std::array<T, n>;
+  template <class T>
+  using Parameters = std::array<T, q + 1>;
+
+  ImpactFlights(const Problem& problem, const tchat_chatter& mode) : problem_(problem), mode_(mode) {}
+
+  /// Numbers of a point, without derivatives.
+  struct Point {
+    State<double> x;
+    Parameters<double> par{};
+  };
+  template <class T>
+  static Point numbers(const T* x, const T* par) {
+    Point at;
+    for (std::size_t i = 0; i < n; ++i) at.x[i] = plain(x[i]);
+    for (std::size_t i = 0; i < q; ++i) at.par[i] = plain(par[i]);
+    return at;
+  }
+
+  template <class T>
+  State<T> field(const T* x, const T* par) const {
+    State<T> f;
+    f.fill(T(NAN));
+    problem_.field(mode_.field, x, par, f.data());
+    return f;
+  }
+  template <class T>
+  State<T> jump(const T* x, const T* par) const {
+    State<T> after;
+    after.fill(T(NAN));
+    problem_.jump(mode_.impact, x, par, after.data());
+    return after;
+  }
+
+  // Functions that are differentiated: h, v and a.
+  struct Height {
+    template <class T>
+    T operator()(const ImpactFlights& self, const T* x, const T* par) const {
+      return self.problem_.event(self.mode_.event, x, par);
+    }
+  };
+  struct Rate {
+    template <class T>
+    T operator()(const ImpactFlights& self, const T* x, const T* par) const {
+      return self.rate(x, par);
+    }
+  };
+  struct Acceleration {
+    template <class T>
+    T operator()(const ImpactFlights& self, const T* x, const T* par) const {
+      return self.acceleration(x, par);
+    }
+  };
+
+  /// A point that moves in directions, and parameters that do not.
+  template <int directions, class T>
+  struct Moving {
+    using Number = Dual<directions, T>;
+    State<Number> state;
+    Parameters<Number> parameters;
+    Moving(const T* x, const T* par) {
+      for (std::size_t i = 0; i < n; ++i) state[i].value = x[i];
+      for (std::size_t i = 0; i < q; ++i) parameters[i].value = par[i];
+    }
+    const Number* x() const { return state.data(); }
+    const Number* par() const { return parameters.data(); }
+  };
+
+  /// The derivative of a function in a direction.
+  template <class T, class Function>
+  T along(const T* direction, const T* x, const T* par, const Function& function) const {
+    Moving<1, T> at(x, par);
+    for (std::size_t i = 0; i < n; ++i) at.state[i].derivative[0] = direction[i];
+    return function(*this, at.x(), at.par()).derivative[0];
+  }
+  template <class T>
+  State<T> along_jump(const T* direction, const T* x, const T* par) const {
+    Moving<1, T> at(x, par);
+    for (std::size_t i = 0; i < n; ++i) at.state[i].derivative[0] = direction[i];
+    const auto after = jump(at.x(), at.par());
+    State<T> result;
+    for (std::size_t i = 0; i < n; ++i) result[i] = after[i].derivative[0];
+    return result;
+  }
+
+  template <class T>
+  T rate(const T* x, const T* par) const {
+    return along<T>(field(x, par).data(), x, par, Height{});
+  }
+  template <class T>
+  T acceleration(const T* x, const T* par) const {
+    return along<T>(field(x, par).data(), x, par, Rate{});
+  }
+
+  using Pair = std::array<std::size_t, 2>;
+
+  /// Two states by which h and v can be set, h and v with their derivatives by these, and the determinant of them.
+  template <class T>
+  struct SetByPair {
+    Pair pair;
+    Dual<2, T> h, v;
+    T determinant;
+  };
+  template <class T>
+  SetByPair<T> set_by_pair(const T* x, const T* par) const {
+    const Pair pair = pair_at(x, par);
+    Moving<2, T> at(x, par);
+    for (std::size_t k = 0; k < 2; ++k) at.state[pair[k]].derivative[k] = T(1.0);
+    const Dual<2, T> h = Height{}(*this, at.x(), at.par()), v = Rate{}(*this, at.x(), at.par());
+    return {pair, h, v, h.derivative[0] * v.derivative[1] - h.derivative[1] * v.derivative[0]};
+  }
+
+  /// d, with h_x d = 0 and v_x d = 1.
+  template <class T>
+  State<T> direction(const T* x, const T* par) const {
+    const SetByPair<T> at = set_by_pair(x, par);
+    State<T> d;
+    d.fill(T(0.0));
+    d[at.pair[0]] = -at.h.derivative[1] / at.determinant;
+    d[at.pair[1]] = at.h.derivative[0] / at.determinant;
+    return d;
+  }
+
+  template <class T>
+  T restitution(const T* x, const T* par) const {
+    const State<T> d = direction(x, par);
+    const State<T> after = along_jump(d.data(), x, par);
+    return -along<T>(after.data(), x, par, Rate{});
+  }
+
+  /// From y to before the next impact, x; `time` goes on. False where there is none.
+  template <class T>
+  bool fly(const State<T>& y, const T* par, State<T>& x, T& time) const {
+    const std::optional<Solved> solved = resolved_flight(numbers(y.data(), par));
+    if (!solved) return false;
+    Flight<T> flight(solved->flight.begin(), solved->flight.end());
+    for (int k = 0; k < derivative_depth<T>; ++k) {
+      Flight<T> step = residual(solved->rule, y, par, flight);
+      solved->matrix.solve(step);
+      for (std::size_t i = 0; i < flight.size(); ++i) flight[i] -= step[i];
+    }
+    x = y;
+    for (std::size_t j = 0; j < solved->rule.stages(); ++j) {
+      const State<T> f = field(&flight[j * n], par);
+      for (std::size_t k = 0; k < n; ++k) x[k] += solved->rule.b(j) * flight.back() * f[k];
+    }
+    time += flight.back();
+    return true;
+  }
+
+ private:
+  /// Two states by which h and v can be set: those with the largest determinant whose terms do not cancel. Which they
+  /// are makes no difference on C.
+  template <class T>
+  Pair pair_at(const T* x, const T* par) const {
+    State<double> at;
+    Parameters<double> with{};
+    for (std::size_t i = 0; i < n; ++i) at[i] = first_lane(x[i]);
+    for (std::size_t i = 0; i < q; ++i) with[i] = first_lane(par[i]);
+    Moving<static_cast<int>(n), double> moving(at.data(), with.data());
+    for (std::size_t i = 0; i < n; ++i) moving.state[i].derivative[i] = 1.0;
+    const auto h = Height{}(*this, moving.x(), moving.par()).derivative;
+    const auto v = Rate{}(*this, moving.x(), moving.par()).derivative;
+    Pair best{0, n - 1};
+    double largest = 0.0;
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j) {
+        const double determinant = h[i] * v[j] - h[j] * v[i];
+        const double terms = std::fabs(h[i] * v[j]) + std::fabs(h[j] * v[i]);
+        if (determinant > 0.5 * terms && determinant > largest) largest = determinant, best = {i, j};
+      }
+    return best;
+  }
+
+  // A flight: the states X_i at the stages of a rule, one after the other, and t.
+  template <class T>
+  using Flight = std::vector<T>;
+
+  /// What is left of X_i - y - t sum_j a_ij f(X_j) and of sum_i b_i v(X_i).
+  template <class T>
+  Flight<T> residual(const GaussRule& rule, const State<T>& y, const T* par, const Flight<T>& flight) const {
+    const std::size_t stages = rule.stages();
+    std::vector<State<T>> f(stages);
+    for (std::size_t j = 0; j < stages; ++j) f[j] = field(&flight[j * n], par);
+    Flight<T> rest(flight.size(), T(0.0));
+    for (std::size_t i = 0; i < stages; ++i) {
+      rest.back() += rule.b(i) * rate(&flight[i * n], par);
+      for (std::size_t k = 0; k < n; ++k) {
+        T sum(0.0);
+        for (std::size_t j = 0; j < stages && rule.a(i, j) != 0.0; ++j) sum += rule.a(i, j) * f[j][k];
+        rest[i * n + k] = flight[i * n + k] - y[k] - flight.back() * sum;
+      }
+    }
+    return rest;
+  }
+
+  bool linearise(const GaussRule& rule, const double* par, const Flight<double>& flight, SmallMatrix& matrix) const {
+    const std::size_t stages = rule.stages();
+    for (std::size_t j = 0; j < stages; ++j) {
+      Moving<static_cast<int>(n), double> at(&flight[j * n], par);
+      for (std::size_t k = 0; k < n; ++k) at.state[k].derivative[k] = 1.0;
+      const auto f = field(at.x(), at.par());
+      const auto v = rate(at.x(), at.par());
+      for (std::size_t i = 0; i < stages; ++i)
+        for (std::size_t k = 0; k < n && rule.a(i, j) != 0.0; ++k) {
+          matrix(i * n + k, stages * n) -= rule.a(i, j) * f[k].value;
+          for (std::size_t c = 0; c < n; ++c)
+            matrix(i * n + k, j * n + c) -= flight.back() * rule.a(i, j) * f[k].derivative[c];
+        }
+      for (std::size_t c = 0; c < n; ++c) matrix(stages * n, j * n + c) = rule.b(j) * v.derivative[c];
+    }
+    for (std::size_t k = 0; k < stages * n; ++k) matrix(k, k) += 1.0;
+    return matrix.factor();
+  }
+
+  /// Of a flight: the sizes of its states and its time.
+  std::vector<double> units_of(const Flight<double>& flight) const {
+    std::vector<double> units(flight.size(), 0.0);
+    for (std::size_t i = 0; i + 1 < flight.size(); ++i) units[i % n] = std::fmax(units[i % n], std::fabs(flight[i]));
+    for (std::size_t i = 0; i + 1 < flight.size(); ++i) units[i] = units[i % n] > 0.0 ? units[i % n] : 1.0;
+    units.back() = std::fabs(flight.back());
+    return units;
+  }
+
+  /// A flight for numbers, with the factors of its matrix.
+  struct Solved {
+    GaussRule rule;
+    Flight<double> flight;
+    SmallMatrix matrix;
+  };
+
+  /// Nothing where there is no flight that ends before the acceleration has led away.
+  std::optional<Solved> solve(const GaussRule& rule, const Point& from) const {
+    constexpr int most_iterations = 20;
+    constexpr double solved = 1e-15;
+    constexpr int enough = 5;          // iterations, after which moves that do not get smaller are rounding,
+    constexpr double rounding = 1e-3;  // at most this: near the limit v is what is left of far larger rates
+    const double a = acceleration(from.x.data(), from.par.data());
+    if (!(a < 0.0)) return std::nullopt;
+    const State<double> f = field(from.x.data(), from.par.data());
+    Flight<double> flight(rule.stages() * n + 1);
+    flight.back() = -2.0 * rate(from.x.data(), from.par.data()) / a;
+    for (std::size_t j = 0; j < rule.stages(); ++j)
+      for (std::size_t k = 0; k < n; ++k) flight[j * n + k] = from.x[k] + rule.c(j) * flight.back() * f[k];
+    double last = HUGE_VAL;
+    for (int k = 0; k < most_iterations; ++k) {
+      SmallMatrix matrix(units_of(flight));
+      if (!linearise(rule, from.par.data(), flight, matrix)) return std::nullopt;
+      Flight<double> step = residual(rule, from.x, from.par.data(), flight);
+      matrix.solve(step);
+      for (std::size_t i = 0; i < flight.size(); ++i) flight[i] -= step[i];
+      const double move = std::fabs(step.back() / flight.back());
+      if (move <= solved || (k >= enough && move <= rounding && move >= 0.5 * last))
+        return flight.back() > 0.0 ? std::optional(Solved{rule, flight, matrix}) : std::nullopt;
+      last = move;
+    }
+    return std::nullopt;
+  }
+
+  /// Is the field along a flight the polynomial that the rule makes of it?
+  bool is_resolved(const Solved& solved, const double* par) const {
+    constexpr double accurate = 1e-6;  // squared, the error
+    std::vector<State<double>> f;
+    for (std::size_t j = 0; j < solved.rule.stages(); ++j) f.push_back(field(&solved.flight[j * n], par));
+    for (std::size_t k = 0; k < n; ++k)
+      if (!(solved.rule.last_share([&](std::size_t j) { return f[j][k]; }) <= accurate)) return false;
+    return true;
+  }
+
+  /// In as many intervals as it needs.
+  std::optional<Solved> resolved_flight(const Point& from) const {
+    constexpr std::size_t most_intervals = 8;
+    for (std::size_t intervals = 1;; intervals *= 2) {
+      std::optional<Solved> solved = solve(GaussRule(intervals), from);
+      if (!solved || intervals == most_intervals || is_resolved(*solved, from.par.data())) return solved;
+    }
+  }
+
+  const Problem& problem_;
+  tchat_chatter mode_;
+};
+
+}  // namespace tchat

@@ -1,0 +1,138 @@
+// Orbits with infinitely many impacts, from simulation to where chatter becomes incomplete.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <complex>
+
+#include "end_to_end/workspace.hpp"
+
+using namespace test_support;
+
+namespace {
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+const char* const ball =
+    "par Gamma=1.1, r=0.5\ninit height=1, velocity=0.458, table=1, w=0.458\n"
+    "growth = 1 - (table^2 + w^2)/Gamma^2\nmoving = growth*table + w\n"
+    "height' = velocity\nvelocity' = -1\ntable' = moving\nw' = growth*w - table\n"
+    "event landing = height - table\njump impact: velocity -> -r*velocity + (1 + r)*moving\n"
+    "contact resting on landing until lifts: flow, impact -> settled\nafter any: flow until landing -> impact\n";
+
+/// Two masses, the second one above a stop.
+const char* const two_masses =
+    "par F=1, omega=0.5, r=0.5\ninit u2=0.5, s=-0.8, c=0.6\ngrowth = 1 - s^2 - c^2\n"
+    "u1' = v1\nv1' = -0.2*v1 - u1 - (u1 - u2) - 0.1*(v1 - v2)\n"
+    "u2' = v2\nv2' = u1 - u2 + 0.1*(v1 - v2) - 0.5 + F*c\n"
+    "s' = growth*s + omega*c\nc' = growth*c - omega*s\n"
+    "event stop = u2\njump impact: v2 -> -r*v2\n"
+    "contact pressed on stop until lifts: flow, impact -> settled\nafter any: flow until stop -> impact\n";
+
+/// A relief valve: G. Licsko, A. Champneys, C. Hos, SIAM J. Appl. Dyn. Syst. 8 (2009); lengths in units of u.
+std::string valve(const std::string& u) {
+  return "par q=0.1, r=0.5\nnumber u=" + u +
+         "\ninit y=0, v=0, p=10\ny' = v\nv' = -1.25*v - (y + 10*u) + u*p\np' = 20*(q - y/u*sqrt(p))\n"
+         "event seat = y\njump impact: v -> -r*v\n"
+         "contact closed on seat until opens: flow, impact -> settled\nafter any: flow until seat -> impact\n";
+}
+
+/// The multipliers of the first label in the d-file.
+std::vector<std::complex<double>> multipliers(const std::string& text) {
+  std::vector<std::complex<double>> values;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) {
+    int number = 0;
+    double real = 0.0, imaginary = 0.0;
+    if (std::sscanf(line.c_str(), " Multiplier %d %lf %lf", &number, &real, &imaginary) != 3) continue;
+    if (number <= static_cast<int>(values.size())) break;
+    values.emplace_back(real, imaginary);
+  }
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("a branch of orbits with complete chatter ends where chatter becomes incomplete") {
+  const Workspace workspace;
+  workspace.write("ball.tch", ball);
+  workspace.succeed("simulate ball --dat rest -q");
+  for (const auto& [r, end] : {std::pair{"0.5", 1.59734883119515}, {"0.3", 1.94693848031279}}) {
+    INFO("r = " << r);
+    if (std::string(r) != "0.5") workspace.succeed("simulate ball PAR(r)=" + std::string(r) + " --dat rest -q");
+    const Outcome outcome = workspace.succeed("run ball -c rest -d rest -o locked RL1=2.5 DSMAX=0.05 NMX=400");
+    INFO(outcome.text());
+    CHECK(contains(outcome.out, "chatter becomes incomplete"));
+    const PointRow& last = workspace.points("locked").front().rows.back();
+    CHECK(std::abs(last.values[0] - end) < 1e-9);
+    CHECK(std::abs(last.values.back() - 2.0 * std::acos(-1.0)) < 1e-9);
+    // As the model's own rules have it, all orbits are admissible.
+    CHECK_FALSE(contains(outcome.out, "inadmissible"));
+  }
+  CHECK(workspace.tchat("verify q.locked -p ball").status == 0);
+}
+
+TEST_CASE("the curve on which chatter becomes incomplete leads from one restitution to another") {
+  const Workspace workspace;
+  workspace.write("ball.tch", ball);
+  workspace.succeed("simulate ball --dat rest -q");
+  workspace.succeed("run ball -c rest -d rest -o locked RL1=2.5 DSMAX=0.05 NMX=400");
+  const Outcome outcome = workspace.succeed(
+      std::vector<std::string>{"run", "ball", "-c", "r.locked", "-s", "locked", "IRS=GR1", "-o", "border",
+                               "HOLD={end(settled_margin,3): 0}", "ICP=[r,Gamma,end(settled_margin,3)]", "UZR={r: 0.3}",
+                               "RL0=0.29", "RL1=0.8", "DS=-0.01", "DSMAX=0.05", "GRSTOP=0"});
+  INFO(outcome.text());
+  CHECK(contains(outcome.out, "UZ label 3 at r = 0.3, Gamma = 1.94693848"));
+  CHECK_FALSE(contains(outcome.out, "incomplete"));
+}
+
+TEST_CASE("multipliers of an orbit with chatter are those of its impacts, and three are zero") {
+  const Workspace workspace;
+  workspace.write("two.tch", two_masses);
+  const std::string text = workspace.succeed("simulate two --dat two -o two").out;
+  INFO(text);
+  CHECK(contains(text, "then settled (infinitely many impacts)"));
+  CHECK(contains(text, "start u1 = -0.12446926841"));
+  workspace.succeed("run two -c two -d two -o branch NMX=2 IID=3");
+  std::vector<std::complex<double>> found = multipliers(workspace.read("d.branch"));
+  REQUIRE(found.size() == 6);
+  std::sort(found.begin(), found.end(), [](auto a, auto b) { return std::abs(a) > std::abs(b); });
+  CHECK(std::abs(std::complex(found[0].real(), std::abs(found[0].imag())) -
+                 std::complex(0.16678206420953, 0.02429332816162)) < 1e-9);
+  CHECK(std::abs(found[1] - std::conj(found[0])) < 1e-9);
+  for (std::size_t k = 3; k < 6; ++k) CHECK(std::abs(found[k]) < 1e-10);  // the third is that of the drive's circle
+}
+
+TEST_CASE("a relief valve chatters, in any units") {
+  const Workspace workspace;
+  for (const std::string u : {"1", "1e-3", "1e-9"}) {
+    INFO("u = " << u);
+    workspace.write("valve.tch", valve(u));
+    const std::string text = workspace.succeed("simulate valve --dat valve -o valve").out;
+    INFO(text);
+    CHECK(contains(text, "period 2.8137143271"));
+  }
+}
+
+TEST_CASE("mistakes in contact statements have their line and cure") {
+  const Workspace workspace;
+  const auto with = [](const std::string& line) {
+    std::string text = ball;
+    const std::string old = "contact resting on landing until lifts: flow, impact -> settled";
+    return text.replace(text.find(old), old.size(), line);
+  };
+  const std::pair<const char*, const char*> mistakes[] = {
+      {"contact resting on landing: flow, impact -> settled", "it is written 'contact NAME on EVENT until EVENT"},
+      {"contact resting on floor until lifts: flow, impact -> settled", "there is no event 'floor'"},
+      {"contact resting on landing until lifts: flow, bounce -> settled", "there is no jump 'bounce'"},
+      {"contact resting on landing until landing: flow, impact -> settled", "there are two events with the name"},
+      {"contact resting on landing until lifts: resting, impact -> settled", "is made by a slide or contact statement"},
+  };
+  for (const auto& [line, message] : mistakes) {
+    INFO(line);
+    workspace.write("ball.tch", with(line));
+    const Outcome outcome = workspace.tchat("check ball");
+    INFO(outcome.text());
+    CHECK(outcome.status == 2);
+    CHECK(contains(outcome.text(), message));
+    CHECK(contains(outcome.text(), "ball.tch:11"));
+  }
+}

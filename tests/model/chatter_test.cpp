@@ -1,0 +1,187 @@
+// The limit of infinitely many impacts, against impacts one by one in closed form: a ball above a table, whose flights
+// are parabolas over a sine.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+#include <tchat/problem.hpp>
+
+namespace {
+
+/// height, velocity, table and its other coordinate in units; Gamma, r and the units are parameters.
+struct BallInUnits {
+  static constexpr int dimension = 4, parameters = 6, fields = 2, events = 3, jumps = 4;
+  static constexpr tchat::Chatter chatter{
+      .field = 1, .event = 1, .impact = 1, .contact = 2, .release = 2, .limit = 3, .margin = 3, .leave = 4};
+
+  template <class T>
+  void field(int, const T* y, const T* par, T* f) const {
+    const T table = y[2] * par[4], w = y[3] * par[5];
+    const T growth = 1.0 - (table * table + w * w) / (par[0] * par[0]);
+    f[0] = y[1] * par[3] / par[2];
+    f[1] = T(-1.0) / par[3];
+    f[2] = (growth * table + w) / par[4];
+    f[3] = (growth * w - table) / par[5];
+  }
+  template <class T>
+  T event(int, const T* y, const T* par) const {
+    return y[0] * par[2] - y[2] * par[4];
+  }
+  template <class T>
+  void jump(int k, const T* y, const T* par, T* g) const {
+    for (int i = 0; i < dimension; ++i) g[i] = y[i];
+    const T table = y[2] * par[4], w = y[3] * par[5];
+    const T growth = 1.0 - (table * table + w * w) / (par[0] * par[0]);
+    if (k == 1) g[1] = ((1.0 + par[1]) * (growth * table + w) - par[1] * y[1] * par[3]) / par[3];
+  }
+};
+
+using Functions = tchat::ChatterFunctions<BallInUnits>;
+using State = std::array<double, 4>;
+using Parameters = std::array<double, 6>;
+
+const BallInUnits ball;
+const Functions functions(ball, BallInUnits::chatter);
+
+/// The impacts of a ball that the table leaves at sin(t) = 1 / Gamma, one after the other.
+class Impacts {
+ public:
+  Impacts(double gamma, double r) : gamma_(gamma), r_(r), released_(std::asin(1.0 / gamma)), time_(released_) {
+    velocity_ = gamma_ * std::cos(time_);
+    // The first flight: h is zero to third order where it begins.
+    const auto height = [this](long double s) {
+      return 1.0L + velocity_ * s - s * s / 2 - gamma_ * std::sin(released_ + s);
+    };
+    long double s = 0.05L;
+    while (height(s) > 0) s += 1e-3L;
+    fly(zero(height, s - 1e-3L, s));
+  }
+
+  long double time() const { return time_ - released_; }
+  State before(const Parameters& par) const {
+    const long double sine = gamma_ * std::sin(time_), cosine = gamma_ * std::cos(time_);
+    return {static_cast<double>(sine / par[2]), static_cast<double>(velocity_ / par[3]),
+            static_cast<double>(sine / par[4]), static_cast<double>(cosine / par[5])};
+  }
+
+  /// False where the table has begun to fall faster than the ball.
+  bool next() {
+    velocity_ = (1.0L + r_) * gamma_ * std::cos(time_) - r_ * velocity_;
+    const long double rate = velocity_ - gamma_ * std::cos(time_), acceleration = gamma_ * std::sin(time_) - 1.0L;
+    if (!(acceleration < 0)) return false;
+    const auto height_by_time = [&](long double s) { return rate - s / 2 - gamma_ * curved(s); };
+    const long double about = -2 * rate / acceleration;
+    for (long double s = about / 100; s < 30 * about && s < 1.5L; s += about / 100)
+      if (height_by_time(s) <= 0) return fly(zero(height_by_time, s - about / 100, s)), true;
+    return false;
+  }
+  long double relative_velocity() const { return std::abs(velocity_ - gamma_ * std::cos(time_)); }
+
+ private:
+  template <class Function>
+  static long double zero(const Function& f, long double low, long double high) {
+    for (int k = 0; k < 80; ++k) {
+      const long double middle = (low + high) / 2;
+      (f(middle) > 0 ? low : high) = middle;
+    }
+    return low;
+  }
+  /// (sin(t + s) - sin t - s cos t) / s
+  long double curved(long double s) const {
+    const long double sine = std::sin(time_), cosine = std::cos(time_);
+    if (s > 1e-3L) return (std::sin(time_ + s) - sine - s * cosine) / s;
+    return s * (-sine / 2 + s * (-cosine / 6 + s * (sine / 24 + s * (cosine / 120 - s * sine / 720))));
+  }
+  void fly(long double s) {
+    time_ += s;
+    velocity_ -= s;
+  }
+
+  long double gamma_, r_, released_, time_, velocity_ = 0;
+};
+
+/// Impacts until contact is near: the time until then; negative where they come to an end before.
+long double time_until_rest(Impacts impacts) {
+  while (impacts.relative_velocity() > 1e-13L)
+    if (!impacts.next()) return -1;
+  return impacts.time();
+}
+
+/// The same, from the first impact on from which the problem sums all up.
+double summed_time(Impacts impacts, const Parameters& par) {
+  for (;;) {
+    const State x = impacts.before(par);
+    const int before = functions.impacts_before_limit(x.data(), par.data());
+    if (before == 0) return static_cast<double>(impacts.time()) + functions.rest(x.data(), par.data()).time;
+    if (before < 0 || !impacts.next()) return -1.0;
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the time until a ball rests on its table is that of its impacts, one by one") {
+  // Known to 14 decimals; impacts are followed until v is 1e-13, with 19 digits.
+  const double known[][3] = {{1.1, 0.3, 1.97631881856528}, {1.1, 0.5, 2.23614064627234}, {1.1, 0.7, 2.73213830231654},
+                             {1.2, 0.3, 2.74948623542274}, {1.2, 0.5, 3.14849541720213}, {1.4, 0.3, 3.79593375225702},
+                             {1.4, 0.5, 4.50634614803606}, {1.05, 0.7, 1.91499181930085}};
+  for (const auto& [gamma, r, time] : known) {
+    INFO("Gamma = " << gamma << ", r = " << r);
+    const Impacts impacts(gamma, r);
+    CHECK(std::abs(static_cast<double>(time_until_rest(impacts)) - time) < 1e-11);
+    CHECK(std::abs(summed_time(impacts, {gamma, r, 1, 1, 1, 1}) - time) < 1e-11);
+  }
+  CHECK(summed_time(Impacts(1.4, 0.7), {1.4, 0.7, 1, 1, 1, 1}) < 0);
+}
+
+TEST_CASE("for any restitution and in any units chatter is complete, or it is not, as impact by impact") {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  int complete = 0;
+  for (int trial = 0; trial < 100; ++trial) {
+    Parameters par{1.02 + 0.9 * share(random), 0.05 + 0.9 * share(random)};
+    for (std::size_t k = 2; k < par.size(); ++k) par[k] = std::pow(10.0, 18.0 * share(random) - 9.0);
+    INFO("Gamma = " << par[0] << ", r = " << par[1]);
+    const Impacts impacts(par[0], par[1]);
+    const auto time = static_cast<double>(time_until_rest(impacts));
+    const double summed = summed_time(impacts, par);
+    CHECK((time < 0) == (summed < 0));
+    if (time >= 0) CHECK(std::abs(summed - time) < 1e-10);
+    complete += time >= 0;
+  }
+  CHECK(complete > 30);
+  CHECK(complete < 90);
+}
+
+TEST_CASE("derivatives of the limit of chatter agree with differences, and contact keeps the ball on the table") {
+  using Dual = tchat::Dual<6>;
+  const Parameters par{1.2, 0.5, 1, 1, 1, 1};
+  Impacts impacts(par[0], par[1]);
+  impacts.next();
+  const State x = impacts.before(par);
+  std::array<Dual, 4> moving, limit;
+  std::array<Dual, 6> with;
+  for (std::size_t i = 0; i < 4; ++i) moving[i] = x[i], moving[i].derivative[i] = 1.0;
+  for (std::size_t i = 0; i < 6; ++i) with[i] = par[i];
+  with[0].derivative[4] = with[1].derivative[5] = 1.0;
+  functions.limit(static_cast<const Dual*>(moving.data()), static_cast<const Dual*>(with.data()), limit.data());
+  constexpr double step = 1e-4;
+  for (std::size_t c = 0; c < 6; ++c) {
+    const auto at = [&](double t) {
+      State moved = x, result;
+      Parameters changed = par;
+      (c < 4 ? moved[c] : changed[c - 4]) += t;
+      functions.limit(moved.data(), changed.data(), result.data());
+      return result;
+    };
+    const State a = at(step), b = at(-step), aa = at(2 * step), bb = at(-2 * step);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double difference = (8.0 * (a[i] - b[i]) - (aa[i] - bb[i])) / (12.0 * step);
+      CHECK(std::abs(limit[i].derivative[c] - difference) < 1e-9 * (1.0 + std::abs(difference)));
+    }
+  }
+  State on, f;
+  for (std::size_t i = 0; i < 4; ++i) on[i] = limit[i].value;
+  CHECK(std::abs(on[0] - on[2]) < 1e-12);
+  functions.contact(on.data(), par.data(), f.data());
+  CHECK(std::abs(f[0] - f[2]) < 1e-12);
+  CHECK(std::abs(f[1] + on[2]) < 1e-12);  // the table's acceleration
+}
