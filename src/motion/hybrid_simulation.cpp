@@ -262,7 +262,9 @@ HybridSimulation::HybridSimulation(const HybridSimulation& at, const VectorXd& e
 
 HybridSimulation::Surface HybridSimulation::surface(int field, int event, const VectorXd& x) const {
   const EventAt at = event_at(system_, event, field, x.data(), par_.data());
-  return {at.h, at.rate(), std::abs(at.h) <= settings_.flow.surface_tolerance * at.scale(x.data(), sizes())};
+  const bool is_at_rest = std::abs(at.rate()) <= level::rounding_of_sums * at.rate_scale(sizes());
+  return {at.h, is_at_rest ? 0.0 : at.rate(),
+          std::abs(at.h) <= settings_.flow.surface_tolerance * at.scale(x.data(), sizes())};
 }
 
 /// Does the jump send the flow back from the surface, as an impact does?

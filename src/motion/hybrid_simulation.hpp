@@ -244,8 +244,8 @@ class HybridSimulation {
   StateAccuracy accuracy() const { return {sizes(), settings_.flow.surface_tolerance}; }
   /// h_j and h_x f under field i at x.
   struct Surface {
-    double h = 0.0, rate = 0.0;
-    bool is_near = false;  // |h| within the tolerance for starts
+    double h = 0.0, rate = 0.0;  // a rate that is rounding is 0
+    bool is_near = false;        // |h| within the tolerance for starts
   };
   Surface surface(int field, int event, const Eigen::VectorXd& x) const;
   bool is_wall(const IndexVector& index, const Eigen::VectorXd& x) const;

@@ -60,10 +60,17 @@ EventWatch::EventWatch(const HybridSystem& system, int field, const std::vector<
     const bool is_near = std::abs(start.h) <= tolerance * start_scale;
     const double around = is_after && !is_near ? std::abs(start.h) / start_scale : tolerance;
     const bool on_surface = is_after || is_near;
+    const double rate_scale = on_surface ? this->rate_scale(event, x0) : 0.0;
+    const bool is_at_rest = std::abs(start.rate) <= level::rounding_of_sums * rate_scale;
     Readiness readiness = start.h > 0.0 ? Readiness::armed : Readiness::below;
-    if (on_surface) readiness = start.rate > 0.0 ? Readiness::leaving_upwards : Readiness::below;
-    events_.push_back({event, readiness, start.h, start.rate, around});
+    if (on_surface) readiness = start.rate > 0.0 && !is_at_rest ? Readiness::leaving_upwards : Readiness::below;
+    events_.push_back({event, readiness, start.h, start.rate, around, is_at_rest ? level::located * rate_scale : 0.0});
   }
+}
+
+double EventWatch::rate_scale(int event, const double* x) const {
+  const bool has_sizes = sizes_.size() > 0;
+  return event_at(system_, event, field_, x, par_.data()).rate_scale(has_sizes ? sizes_ : VectorXd::Ones(f_.size()));
 }
 
 void EventWatch::set_field(const double* x) const {
@@ -137,13 +144,14 @@ std::optional<double> EventWatch::fall(Watched& watched, double end, double h, d
   // Below zero or just leaving it: a maximum between the two times may have been above.
   if (watched.rate > 0.0 && rate < 0.0 && h <= 0.0) {
     const double top = last_change(time_, end, [&](double t) { return this->rate(event, state(t)); });
-    const bool is_above = h_at(top) > 0.0;
+    const double least_top = watched.at_rest > 0.0 ? watched.tolerance * scale(event, state(top)) : 0.0;
+    const bool is_above = h_at(top) > least_top;
     if (is_above) return last_change(top, end, h_at);
     if (watched.readiness == Readiness::leaving_upwards) return top;  // a flight as short as rounding
   }
   if (!(h > 0.0)) return std::nullopt;
-  const bool has_risen =
-      watched.readiness == Readiness::leaving_upwards || rate > 0.0 || h > watched.tolerance * scale(event, state(end));
+  const bool has_risen = watched.readiness == Readiness::leaving_upwards || rate > watched.at_rest ||
+                         h > watched.tolerance * scale(event, state(end));
   if (has_risen) watched.readiness = Readiness::armed;
   return std::nullopt;
 }

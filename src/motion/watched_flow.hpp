@@ -98,7 +98,8 @@ class EventWatch {
   void set_field(const double* x) const;
   Value on_field(int event, const double* x) const;  // the field has been set
   Value at(int event, const double* x) const;
-  double scale(int event, const double* x) const;  // what rounding of the state makes of h
+  double scale(int event, const double* x) const;
+  double rate_scale(int event, const double* x) const;  // and of its rate
 
   enum class Readiness { below, leaving_upwards, armed };
   struct Watched {
@@ -106,6 +107,7 @@ class EventWatch {
     Readiness readiness;
     double h, rate;    // at the time last looked at
     double tolerance;  // |h| up to this share of its scale has not risen
+    double at_rest;    // nor while its rate is below this: where it starts at rest on its surface both are rounding
   };
 
   /// When this event falls in (time_, end], where its h and rate are now those given; updates its readiness.

@@ -114,13 +114,19 @@ class ChatterFunctions : ImpactFlights<Problem> {
     return -acceleration(x, par);
   }
 
-  /// The state on C next to x: one step of Newton's method in two states, by which h and v can be set.
+  /// The state next to x with h = v = a = 0, which differs from it in three states: by Newton's method with the matrix
+  /// at x, once for numbers, which are near, and as often as derivatives are nested.
   template <class T>
   void leave(const T* x, const T* par, T* out) const {
-    const auto at = this->set_by_pair(x, par);
+    const Point at = numbers(x, par);
+    const auto [states, inverse] = this->release_matrix(at.x.data(), at.par.data());
     for (std::size_t i = 0; i < n; ++i) out[i] = x[i];
-    out[at.pair[0]] -= (at.h.value * at.v.derivative[1] - at.v.value * at.h.derivative[1]) / at.determinant;
-    out[at.pair[1]] -= (at.v.value * at.h.derivative[0] - at.h.value * at.v.derivative[0]) / at.determinant;
+    for (int k = 0; k <= derivative_depth<T>; ++k) {
+      const T* const here = out;
+      const std::array<T, 3> rest{this->height(here, par), rate(here, par), acceleration(here, par)};
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) out[states[i]] -= inverse[i][j] * rest[j];
+    }
   }
 
   /// Where all impacts from the one at x on lead to, and how long they take. Where they do not accumulate, a

@@ -15,6 +15,7 @@
 #include "tchat/dual.hpp"
 #include "tchat/gauss_flight.hpp"
 #include "tchat/problem.h"
+#include "tchat/sliding.hpp"
 
 namespace tchat {
 
@@ -133,32 +134,45 @@ class ImpactFlights {
     return along<T>(field(x, par).data(), x, par, Rate{});
   }
 
-  using Pair = std::array<std::size_t, 2>;
+  template <class T>
+  T height(const T* x, const T* par) const {
+    return problem_.event(mode_.event, x, par);
+  }
 
-  /// Two states by which h and v can be set, h and v with their derivatives by these, and the determinant of them.
-  template <class T>
-  struct SetByPair {
-    Pair pair;
-    Dual<2, T> h, v;
-    T determinant;
+  /// Three states by which h, v and a can be set, those with the largest determinant whose terms do not cancel, and the
+  /// inverse of the derivatives of h, v and a by them.
+  struct ReleaseMatrix {
+    std::array<std::size_t, 3> states;
+    std::array<std::array<double, 3>, 3> inverse;
   };
-  template <class T>
-  SetByPair<T> set_by_pair(const T* x, const T* par) const {
-    const Pair pair = pair_at(x, par);
-    Moving<2, T> at(x, par);
-    for (std::size_t k = 0; k < 2; ++k) at.state[pair[k]].derivative[k] = T(1.0);
-    const Dual<2, T> h = Height{}(*this, at.x(), at.par()), v = Rate{}(*this, at.x(), at.par());
-    return {pair, h, v, h.derivative[0] * v.derivative[1] - h.derivative[1] * v.derivative[0]};
+  ReleaseMatrix release_matrix(const double* x, const double* par) const {
+    Moving<static_cast<int>(n), double> at(x, par);
+    for (std::size_t i = 0; i < n; ++i) at.state[i].derivative[i] = 1.0;
+    const std::array<State<double>, 3> by = {Height{}(*this, at.x(), at.par()).derivative,
+                                             Rate{}(*this, at.x(), at.par()).derivative,
+                                             Acceleration{}(*this, at.x(), at.par()).derivative};
+    ReleaseMatrix best{};
+    double largest = 0.0;
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        for (std::size_t k = 0; k < j; ++k) take_if_larger(by, {i, j, k}, largest, best);
+    if (!(largest > 0.0)) throw NoValue("no three states set the height, its rate and its acceleration");
+    return best;
   }
 
   /// d, with h_x d = 0 and v_x d = 1.
   template <class T>
   State<T> direction(const T* x, const T* par) const {
-    const SetByPair<T> at = set_by_pair(x, par);
+    const Pair pair = pair_at(x, par);
+    Moving<2, T> at(x, par);
+    for (std::size_t k = 0; k < 2; ++k) at.state[pair[k]].derivative[k] = T(1.0);
+    const auto h = Height{}(*this, at.x(), at.par()).derivative;
+    const auto v = Rate{}(*this, at.x(), at.par()).derivative;
+    const T determinant = h[0] * v[1] - h[1] * v[0];
     State<T> d;
     d.fill(T(0.0));
-    d[at.pair[0]] = -at.h.derivative[1] / at.determinant;
-    d[at.pair[1]] = at.h.derivative[0] / at.determinant;
+    d[pair[0]] = -h[1] / determinant;
+    d[pair[1]] = h[0] / determinant;
     return d;
   }
 
@@ -190,6 +204,8 @@ class ImpactFlights {
   }
 
  private:
+  using Pair = std::array<std::size_t, 2>;
+
   /// Two states by which h and v can be set: those with the largest determinant whose terms do not cancel. Which they
   /// are makes no difference on C.
   template <class T>
@@ -315,6 +331,26 @@ class ImpactFlights {
       std::optional<Solved> solved = solve(GaussRule(intervals), from);
       if (!solved || intervals == most_intervals || is_resolved(*solved, from.par.data())) return solved;
     }
+  }
+
+  static void take_if_larger(const std::array<State<double>, 3>& by, const std::array<std::size_t, 3>& states,
+                             double& largest, ReleaseMatrix& best) {
+    std::array<std::array<double, 3>, 3> inverse{};  // the cofactors first
+    double determinant = 0.0, terms = 0.0;
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j) {
+        const auto entry = [&](std::size_t row, std::size_t column) { return by[row % 3][states[column % 3]]; };
+        const double one = entry(j + 1, i + 1) * entry(j + 2, i + 2), other = entry(j + 1, i + 2) * entry(j + 2, i + 1);
+        inverse[i][j] = one - other;
+        if (i > 0) continue;
+        determinant += entry(j, 0) * (one - other);
+        terms += std::fabs(entry(j, 0)) * (std::fabs(one) + std::fabs(other));
+      }
+    if (!(std::fabs(determinant) > largest && std::fabs(determinant) > 0.1 * terms)) return;
+    for (auto& row : inverse)
+      for (double& value : row) value /= determinant;
+    largest = std::fabs(determinant);
+    best = {states, inverse};
   }
 
   const Problem& problem_;
