@@ -153,8 +153,7 @@ class ChatterFunctions : ImpactFlights<Problem> {
   /// where it is complete. Where u falls soon it is that of the last impact. Not there where impacts come to an end.
   template <class T>
   T margin(const T* x, const T* par) const {
-    const Point at = numbers(x, par);
-    const int last = impacts_to_border(restitution(at.x.data(), at.par.data())), first = last - 4;
+    const int last = impacts_to_border(restitution_of_chatter(numbers(x, par))), first = last - 4;
     std::vector<T> places, values;
     State<T> here;
     for (std::size_t i = 0; i < n; ++i) here[i] = x[i];
@@ -182,8 +181,12 @@ class ChatterFunctions : ImpactFlights<Problem> {
   /// How many impacts there are before those that are near their limit, the one at x included: none is 0. Negative
   /// where impacts do not accumulate.
   int impacts_before_limit(const double* x, const double* par) const {
-    const Impacts<double> impacts = impacts_from(x, par);
-    return impacts.is_complete ? impacts.near : -1;
+    try {
+      const Impacts<double> impacts = impacts_from(x, par);
+      return impacts.is_complete ? impacts.near : -1;
+    } catch (const NoValue&) {
+      return -1;
+    }
   }
 
  private:
@@ -214,6 +217,12 @@ class ChatterFunctions : ImpactFlights<Problem> {
     int apart = 1;  // s
     bool is_complete = false;
   };
+
+  double restitution_of_chatter(const Point& at) const {
+    const double r = restitution(at.x.data(), at.par.data());
+    if (!(r > 0.0 && r < 1.0)) throw NoValue("impacts accumulate where their restitution is between 0 and 1 only");
+    return r;
+  }
 
   /// u / c(r): infinite where a is not negative.
   double share_of_border(const Point& at, double r) const {
@@ -253,9 +262,7 @@ class ChatterFunctions : ImpactFlights<Problem> {
   /// rounding; or those up to where there is no further one.
   template <class T>
   Impacts<T> impacts_from(const T* x, const T* par) const {
-    const Point at = numbers(x, par);
-    const double r = restitution(at.x.data(), at.par.data());
-    if (!(r > 0.0 && r < 1.0)) throw NoValue("impacts accumulate where their restitution is between 0 and 1 only");
+    const double r = restitution_of_chatter(numbers(x, par));
     Impacts<T> impacts;
     impacts.apart = static_cast<int>(std::ceil(std::log(0.5) / std::log(r)));
     State<T> here;
