@@ -77,7 +77,7 @@ TEST_CASE("the curve on which chatter becomes incomplete leads from one restitut
   workspace.succeed("run ball -c rest -d rest -o locked RL1=2.5 DSMAX=0.05 NMX=400");
   const Outcome outcome = workspace.succeed(
       std::vector<std::string>{"run", "ball", "-c", "r.locked", "-s", "locked", "IRS=GR1", "-o", "border",
-                               "HOLD={end(settled_margin,3): 0}", "ICP=[r,Gamma,end(settled_margin,3)]", "UZR={r: 0.3}",
+                               "HOLD={end(settled_margin,4): 0}", "ICP=[r,Gamma,end(settled_margin,4)]", "UZR={r: 0.3}",
                                "RL0=0.29", "RL1=0.8", "DS=-0.01", "DSMAX=0.05", "GRSTOP=0"});
   INFO(outcome.text());
   CHECK(contains(outcome.out, "UZ label 3 at r = 0.3, Gamma = 1.94693848"));
