@@ -19,6 +19,9 @@ constexpr double largest_share = 0.4;
 constexpr int most_rounds = 20;
 /// The least share of a move that the next one is trusted to be: two places that agree more closely do so by chance.
 constexpr double least_move = 0.01;
+/// That is asked for as long as the bracket is wider than this share of the step: across a narrow one rounding decides
+/// on the direction in which the branch goes on.
+constexpr double wide = 1e-3;
 /// Rounds in a row in which the place moves more than before.
 constexpr int most_worse = 2;
 /// Share of the step that counts as one place for other functions that vanish there.
@@ -66,7 +69,8 @@ bool BranchPointBracket::narrow(const Evaluate& evaluate, PathPoint& trial, doub
     zero_ = interpolated_zero();
     if (round > 0) {
       const double before = std::exchange(moved, std::abs(zero_ - last));
-      error = std::max(moved, least_move * before);
+      const bool is_wide = high_.at - low_.at > wide * whole;
+      error = is_wide ? std::max(moved, least_move * before) : moved;
     }
     if (error <= best.error && high_.at - low_.at <= narrow_enough * whole) {
       best = {error, moved, zero_, low_, high_};
