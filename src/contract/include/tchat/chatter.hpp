@@ -307,7 +307,7 @@ class ChatterFunctions : ImpactFlights<Problem> {
     return {nodes.front().state, nodes.front().time};
   }
 
-  /// The state that the motion in contact has had this time ago, in as many equal parts as numbers need.
+  /// The state of the motion in contact at a time earlier by `time`, in as many equal parts as accuracy needs.
   template <class T>
   State<T> back_in_contact(const State<T>& x, const T& time, const T* par) const {
     constexpr int most_parts = 64;

@@ -324,7 +324,7 @@ class ImpactFlights {
     return true;
   }
 
-  /// In as many intervals as it needs.
+  /// The flight in the fewest intervals that resolve it.
   std::optional<Solved> resolved_flight(const Point& from) const {
     constexpr std::size_t most_intervals = 8;
     for (std::size_t intervals = 1;; intervals *= 2) {
