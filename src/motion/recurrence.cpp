@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/levels.hpp"
+#include "base/limit_at_zero.hpp"
 #include "linear/dense_matrix.hpp"
 #include "model/events.hpp"
 #include "orbit/equilibrium_system.hpp"
@@ -63,29 +64,25 @@ ChatteringDetector::Accumulation ChatteringDetector::limit(std::size_t q, std::s
   constexpr std::size_t most_nodes = 8;
   constexpr double safety = 5.0;  // of the last increment, which has been 2 to 5 times too small
   const std::size_t nodes = std::min(turns, most_nodes);
-  std::array<double, most_nodes> lengths{}, times{};
-  double time = 0.0, known_to = 0.0;
+  std::array<double, most_nodes> lengths{};
+  double known_to = 0.0, first = 0.0;  // where the first pattern ends, before the last one
   std::size_t k = segments_.size();
   for (std::size_t j = 0; j < nodes; ++j) {
-    times[j] = time;
+    if (j > 0) first -= lengths[j - 1];
     for (std::size_t i = 0; i < q; ++i) {
       --k;
       lengths[j] += segments_[k].duration;
       known_to = std::max(known_to, segments_[k].uncertainty);
     }
-    time -= lengths[j];
   }
-  double remaining = lengths[0] * ratio / (1.0 - ratio), error = remaining;
-  double last = times[0];
-  for (std::size_t order = 1; order < nodes; ++order) {
-    for (std::size_t i = 0; i + order < nodes; ++i)
-      times[i] = (lengths[i] * times[i + 1] - lengths[i + order] * times[i]) / (lengths[i] - lengths[i + order]);
-    const double change = std::abs(times[0] - last);
-    last = times[0];
-    if (order > 1 && !(change < error)) break;  // what is left is rounding
-    remaining = times[0];
-    error = change;
+  LimitAtZero limit;
+  double time = first;
+  for (std::size_t j = nodes; j-- > 0;) {
+    limit.add(lengths[j], time, 0.0);
+    if (j > 0) time += lengths[j - 1];
   }
+  const double about = lengths[0] * ratio / (1.0 - ratio);
+  const double remaining = nodes > 1 ? limit.best : about, error = nodes > 1 ? limit.error : about;
   return {remaining, ratio, static_cast<int>(q), safety * error + known_to / (1.0 - ratio)};
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/levels.hpp"
+#include "base/limit_at_zero.hpp"
 #include "model/events.hpp"
 
 namespace tchat {
@@ -152,14 +153,6 @@ std::string index_text(const IndexVector& v) { return fmt::format("({},{},{})", 
 std::string multiplier_text(const std::complex<double>& mu) {
   if (mu.imag() == 0.0) return fmt::format("{:.10g}", mu.real());
   return fmt::format("{:.10g} {} {:.10g} i", mu.real(), mu.imag() < 0.0 ? '-' : '+', std::abs(mu.imag()));
-}
-
-/// With the digits that its uncertainty leaves.
-std::string known_digits(double value, double uncertainty) {
-  const double share = uncertainty > 0.0 ? std::abs(value) / uncertainty : INFINITY;
-  const double digits =
-      std::isfinite(share) ? std::clamp(std::ceil(std::log10(std::max(share, 1.0))) + 1.0, 1.0, 12.0) : 12.0;
-  return fmt::format("{:.{}g}", value, static_cast<int>(digits));
 }
 
 std::string why_it_ended(const HybridSystem& system, const SimulationResult& result) {
