@@ -29,11 +29,22 @@ constexpr double sudden = 1e3;
 /// An orbit whose states all move by a smaller share of what they did is a point: where the branch was found to turn,
 /// known to EPSS, and where Newton's matrix is singular anyway.
 constexpr double shrunk_where_located = 1e-3;
+/// On curves of folds that matrix is so with the square of the amplitude.
+constexpr double folds_shrunk_where_located = 2e-3;
 /// So near to a point a branch is followed that leads through it: Newton's matrix is as near to a singular one.
 constexpr double shrunk_enough = level::visible;
 /// The deviations of orbits before and behind a point are opposite but for what a step changes.
 constexpr double opposite = -0.8;
 constexpr double shrunk = level::located;
+
+/// How well the parameters are known where a curve of folds ends.
+std::string accuracy_of_limits(const std::optional<SmallestOrbit>& end) {
+  if (!end || end->uncertainties.empty()) return "; its parameters are those of the last orbit, and less accurate";
+  std::string text;
+  for (const double uncertainty : end->uncertainties)
+    text += fmt::format("{}{:.0e}", text.empty() ? "; its parameters are known to " : " and ", uncertainty);
+  return text;
+}
 
 /// On arclength: states are known to a share of their size; where steps are far shorter, as those of a parameter in
 /// large units, to a share of ten thousand of these.
@@ -124,7 +135,7 @@ BranchSummary ContinuationRun::run(PathPoint start) {
   while (!ended_) {
     prepare_next_step();
     if (!take_step()) {
-      give_up();
+      if (!ends_beside_point()) give_up();
       break;
     }
     if (!may_go_to_next()) break;
@@ -250,32 +261,23 @@ bool ContinuationRun::turns_visibly(double parameter) const {
 bool ContinuationRun::leads_through_point() {
   if (!analysis_->may_shrink() || deviation_cosine(here_.orbit, next_.point.orbit, system_.orbits()) > opposite)
     return false;
-  constexpr int max_steps = 30;
-  PathPoint near = here_;
-  PathPoint trial = here_;
-  NewtonResult newton = newton_;
-  double share = 0.9;  // of the way to the point
-  double length = 0.0;
-  for (int k = 0; k < max_steps && !trend_.has_shrunk(near.orbit, shrunk_enough); ++k) {
-    const double ds = -share / deviation_growth(near.orbit, near.tangent.states, system_.orbits());
-    if (!(ds * next_.ds > 0.0)) break;
-    newton = follower_.step(near, ds, trial);
-    if (newton.converged() && deviation_cosine(near.orbit, trial.orbit, system_.orbits()) > -opposite) {
-      std::swap(near, trial);
-      length += ds;
-    } else {
-      share *= 0.5;
-    }
-  }
-  const bool found = trend_.has_shrunk(near.orbit, shrunk_where_located);
+  const double growth = deviation_growth(here_.orbit, here_.tangent.states, system_.orbits());
+  if (!(growth * next_.ds < 0.0)) return false;
+  const Approach nearest = approach(follower_, here_, shrinking_amplitude(trend_, system_.orbits()), shrunk_enough);
+  const bool found = trend_.has_shrunk(nearest.point.orbit, where_located());
   if (found) {
-    next_.point = near;
-    next_.ds = length;
-    newton_ = newton;
+    next_.point = nearest.point;
+    next_.ds = nearest.length;
+    newton_ = nearest.newton;
   }
   follower_.linearize_at(next_.point);
   next_.data = search_.evaluate(next_.point);
   return found;
+}
+
+/// The share of amplitudes to which Newton's method comes beside a point.
+double ContinuationRun::where_located() const {
+  return is_curve_of_folds(follower_) ? folds_shrunk_where_located : shrunk_where_located;
 }
 
 /// Where the branch turns, or ends of itself, because its orbit has shrunk to a point: the end of the branch.
@@ -283,15 +285,32 @@ SpecialPoint ContinuationRun::shrunk_orbit(SpecialPoint special, bool through_po
   if (!analysis_->may_shrink()) return special;
   const bool turns =
       through_point || special.type == PointType::fold || special.kind.kind == UserPointKind::impact_velocity;
-  if (!trend_.has_shrunk(next_.point.orbit, turns ? shrunk_where_located : shrunk)) return special;
-  const OrbitCondition* condition = follower_.condition();
-  const bool are_folds = condition != nullptr && condition->count() == 1 && condition->kept_multiplier() == 1;
-  if (std::optional<PathPoint> smallest = smallest_orbit(follower_, system_, here_, trend_))
-    next_.point = *std::move(smallest);
+  return trend_.has_shrunk(next_.point.orbit, turns ? where_located() : shrunk) ? end_at_point() : special;
+}
+
+/// Makes next_ the end of the branch, whose orbit is a point.
+SpecialPoint ContinuationRun::end_at_point() {
+  const bool are_folds = is_curve_of_folds(follower_);
+  std::optional<SmallestOrbit> smallest = smallest_orbit(follower_, system_, here_, trend_);
+  if (smallest) next_.point = std::move(smallest->point);
   next_.data = search_.evaluate_again(next_.point);
-  special = analysis_->shrunk(next_.point.orbit, are_folds);
+  SpecialPoint special = analysis_->shrunk(next_.point.orbit, are_folds);
+  if (are_folds) special.description += accuracy_of_limits(smallest);
   end(EndReason::equilibrium, special.description);
   return special;
+}
+
+/// Does a curve of folds end at here_, from which no step leads on, because it is beside a point?
+bool ContinuationRun::ends_beside_point() {
+  constexpr double beside = 10.0;  // times the amplitude to which steps may lead
+  const bool may_be = analysis_->may_shrink() && is_curve_of_folds(follower_);
+  if (!may_be || !trend_.has_shrunk(here_.orbit, beside * where_located())) return false;
+  next_.point = here_;
+  const SpecialPoint special = end_at_point();
+  std::swap(here_, next_.point);
+  ++number_;
+  accept(end_conditions(special));
+  return true;
 }
 
 /// A two-parameter curve may be left without a special point where it ends: from a start there, or when it was missed.
@@ -409,6 +428,8 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
     end(EndReason::interrupted, "");
   else if (const std::string none = system_.why_no_solution(here_.orbit); !none.empty())
     end(EndReason::no_orbit, none);
+  else if (const std::string released = tangent_release(follower_, system_, here_); !released.empty())
+    end(EndReason::no_orbit, released);
   else if (const std::string shorter = shorter_orbit(); !shorter.empty())
     end(EndReason::no_orbit, shorter);
   else if (const std::string why = settings_.unresolved ? settings_.unresolved(here_.orbit) : ""; !why.empty())

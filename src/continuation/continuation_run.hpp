@@ -84,6 +84,9 @@ class ContinuationRun {
   SpecialPoint end_at_first_point(SpecialPoint special, double length);
   SpecialPoint advance();
   bool leads_through_point();
+  double where_located() const;
+  bool ends_beside_point();
+  SpecialPoint end_at_point();
   SpecialPoint shrunk_orbit(SpecialPoint special, bool through_point);
   SpecialPoint curve_end(SpecialPoint special);
   SpecialPoint end_conditions(SpecialPoint special);

@@ -1,66 +1,67 @@
 #include "continuation/orbit_limit.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "base/levels.hpp"
+#include "base/limit_at_zero.hpp"
+#include "model/events.hpp"
 #include "stability/curve_tests.hpp"
 
 namespace tchat {
 
 namespace {
 
-/// The point with this amplitude near `from`.
-std::optional<PathPoint> with_amplitude(PathFollower& follower, int orbits, const PathPoint& from,
-                                        const OrbitTrend& trend, double wanted) {
-  constexpr double as_expected = 0.5;  // relatively: the tangent knows amplitudes to their square
-  constexpr double alike = 0.8;        // cosine: the same orbit, not begun half a turn later
-  const double growth = deviation_growth(from.orbit, from.tangent.states, orbits);
-  const double ds = (wanted / trend.amplitude(from.orbit) - 1.0) / growth;
-  PathPoint found = from;
-  if (!std::isfinite(ds) || !follower.step(from, ds, found).converged()) return std::nullopt;
-  if (!(std::abs(trend.amplitude(found.orbit) - wanted) <= as_expected * wanted)) return std::nullopt;
-  if (deviation_cosine(from.orbit, found.orbit, orbits) < alike) return std::nullopt;
-  return found;
+/// The tangent knows sizes to their square.
+bool has_size(const Approach& reached, double wanted) { return std::abs(reached.size - wanted) <= 0.5 * wanted; }
+
+/// A limit of a free parameter.
+struct Limit {
+  double value, uncertainty;
+};
+
+/// Those of the free parameters at size zero, from orbits of sizes `largest` down to `smallest`, each half the one
+/// before, since rounding grows as sizes fall. Empty where there are too few.
+std::vector<Limit> limits_of_parameters(PathFollower& follower, const DefiningSystem& system, const PathPoint& from,
+                                        const Shrinking& what, double largest, double smallest) {
+  constexpr int fewest = 3;
+  constexpr double safety = 5.0;  // of the agreement of two orders
+  std::vector<LimitAtZero> found(system.free_parameters().size());
+  int count = 0;
+  PathPoint here = from;
+  for (double size = largest; size >= smallest; size *= 0.5) {
+    const Approach reached = approach(follower, here, what, size);
+    if (!has_size(reached, size)) continue;
+    here = reached.point;
+    for (std::size_t i = 0; i < found.size(); ++i)
+      found[i].add(what.argument(here.orbit), here.orbit.par(system.free_parameters()[i] - 1), 0.0);
+    ++count;
+  }
+  std::vector<Limit> limits;
+  for (const LimitAtZero& limit : found)
+    if (count >= fewest) limits.push_back({limit.best, safety * limit.error});
+  return limits;
 }
 
-/// The limit of PAR(k) as the amplitude a goes to 0, from the polynomial in a^2 through three orbits; nothing where
-/// that does not converge.
-std::optional<double> limit_of_parameter(std::span<const Orbit> orbits, std::span<const double> amplitudes, int k) {
-  constexpr double converges = 0.1;  // what the third orbit adds, as a share of what the parameter changes at all
-  const auto value = [&](std::size_t i) { return orbits[i].par(k - 1); };
-  const auto between = [&](std::size_t i, std::size_t j, double a, double b) {
-    const double x = std::pow(amplitudes[i], 2), y = std::pow(amplitudes[j], 2);
-    return (x * b - y * a) / (x - y);
-  };
-  const double of_larger = between(0, 1, value(0), value(1));
-  const double of_smaller = between(1, 2, value(1), value(2));
-  const double limit = between(0, 2, of_larger, of_smaller);
-  const bool is_certain =
-      std::abs(limit - of_smaller) <= converges * std::abs(limit - value(0)) + orbit_accuracy * std::abs(limit);
-  return is_certain ? std::optional(limit) : std::nullopt;
-}
-
-/// Gives x the free parameters of the end, all of them or none.
-void put_limits(PathFollower& follower, const DefiningSystem& system, const PathPoint& from, const OrbitTrend& trend,
-                Orbit& x) {
-  constexpr std::array shares = {0.02, 0.014, 0.008};
-  std::vector<Orbit> orbits;
-  std::vector<double> amplitudes;
-  for (const double share : shares) {
-    const std::optional<PathPoint> point = with_amplitude(follower, 1, from, trend, share);
-    if (!point) return;
-    orbits.push_back(point->orbit);
-    amplitudes.push_back(trend.amplitude(point->orbit));
-  }
-  std::vector<double> limits;
-  for (const int k : system.free_parameters()) {
-    const std::optional<double> limit = limit_of_parameter(orbits, amplitudes, k);
-    if (!limit) return;
-    limits.push_back(*limit);
-  }
-  for (std::size_t i = 0; i < limits.size(); ++i) x.par(system.free_parameters()[i] - 1) = limits[i];
+/// Of contact behind the limit of impacts, segment s: the rate of the event function at its release as a share of the
+/// function's range in contact over the duration; nothing for other segments.
+std::optional<double> share_of_release(const DefiningSystem& system, const Orbit& x, int s) {
+  const Signature& signature = system.signature();
+  const IndexVector& before = signature[static_cast<std::size_t>((s + system.segments() - 1) % system.segments())];
+  const IndexVector& own = signature[static_cast<std::size_t>(s)];
+  const HybridSystem& functions = system.system();
+  const tchat_chatter* const mode = functions.chatter_with_limit(before.jump);
+  if (mode == nullptr || own.field != mode->contact || own.event != mode->release) return std::nullopt;
+  double most = 0.0;
+  for (int k = 0; k < x.shape.nodes_of(s); ++k)
+    most = std::max(most, functions.event(own.event, x.states.col(x.shape.first_node(s) + k).data(), x.par.data()));
+  const double* end = x.states.col(x.shape.first_node(s) + x.shape.nodes_of(s) - 1).data();
+  return std::abs(event_at(functions, own.event, own.field, end, x.par.data()).rate()) * x.duration(s) / most;
 }
 
 /// The mean of each node's state and of that half a doubled orbit away.
@@ -85,6 +86,38 @@ Eigen::VectorXd same_in_halves(const Eigen::VectorXd& durations) {
 
 }  // namespace
 
+Approach approach(PathFollower& follower, const PathPoint& from, const Shrinking& what, double wanted) {
+  constexpr int max_steps = 30;
+  constexpr double smallest_change = 0.9, largest_change = 1e-3;
+  Approach here{from, 0.0, what.size(from.orbit), {}};
+  PathPoint trial = from;
+  double change = largest_change;
+  for (int k = 0; k < max_steps && change < smallest_change && !has_size(here, wanted); ++k) {
+    const double target = std::clamp(wanted, change * here.size, here.size / change);
+    const double ds = (target / here.size - 1.0) / what.growth(here.point);
+    if (!std::isfinite(ds)) break;
+    const NewtonResult newton = follower.step(here.point, ds, trial);
+    const Approach there{trial, here.length + ds, what.size(trial.orbit), newton};
+    const bool is_there = newton.converged() && has_size(there, target) && what.is_same(here.point.orbit, trial.orbit);
+    if (is_there) here = there;
+    change = is_there ? largest_change : std::sqrt(change);
+  }
+  return here;
+}
+
+Shrinking shrinking_amplitude(const OrbitTrend& trend, int orbits) {
+  constexpr double alike = 0.8;  // cosine
+  return {[&trend](const Orbit& x) { return trend.amplitude(x); },
+          [orbits](const PathPoint& at) { return deviation_growth(at.orbit, at.tangent.states, orbits); },
+          [orbits](const Orbit& x, const Orbit& y) { return deviation_cosine(x, y, orbits) >= alike; },
+          [](const Orbit& x) { return std::pow(deviation_norm(x), 2); }};
+}
+
+bool is_curve_of_folds(PathFollower& follower) {
+  const OrbitCondition* condition = follower.condition();
+  return condition != nullptr && condition->count() == 1 && condition->kept_multiplier() == 1;
+}
+
 void put_end_of_doubled_folds(PathFollower& follower, const DefiningSystem& system, const PathPoint& from, double ds,
                               Orbit& x) {
   // There d^4 and what rounding / d^2 makes of parameters are about the same.
@@ -108,28 +141,50 @@ void put_end_of_doubled_folds(PathFollower& follower, const DefiningSystem& syst
     x.par(system.free_parameters()[g] - 1) += 0.5 * rest * near.tangent.globals(static_cast<Eigen::Index>(g));
 }
 
-std::optional<PathPoint> smallest_orbit(PathFollower& follower, const DefiningSystem& system, const PathPoint& from,
-                                        const OrbitTrend& trend) {
-  const OrbitCondition* condition = follower.condition();
-  const bool are_folds = condition != nullptr && condition->count() == 1 && condition->kept_multiplier() == 1;
-  const bool is_branch = condition == nullptr && system.free_count() == 1 && follower.held().empty();
+std::optional<SmallestOrbit> smallest_orbit(PathFollower& follower, const DefiningSystem& system, const PathPoint& from,
+                                            const OrbitTrend& trend) {
+  const bool are_folds = is_curve_of_folds(follower);
+  const bool is_branch = follower.condition() == nullptr && system.free_count() == 1 && follower.held().empty();
   const bool are_tori = system.orbits() > 1;
   if (!are_tori && (!is_smooth(system) || !(is_branch || are_folds))) return std::nullopt;
-  constexpr std::array of_folds = {1e-2, 2e-3, 5e-4};
-  constexpr std::array of_branch = {1e-2, 1e-3, level::visible, level::same};
-  const std::span<const double> shares = are_folds ? std::span<const double>(of_folds) : of_branch;
-  PathPoint here = from;
-  double reached = 1.0;
-  for (const double wanted : shares) {
-    std::optional<PathPoint> next = with_amplitude(follower, system.orbits(), here, trend, wanted);
-    if (!next) break;
-    here = *std::move(next);
-    reached = wanted;
+  constexpr double of_folds = 5e-4, of_branch = level::same;
+  const double small_enough = are_folds ? 2e-2 : 2e-3;
+  const Shrinking amplitude = shrinking_amplitude(trend, system.orbits());
+  Approach smallest = approach(follower, from, amplitude, are_folds ? of_folds : of_branch);
+  if (smallest.size > small_enough) return std::nullopt;
+  SmallestOrbit result{std::move(smallest.point), {}};
+  if (!are_folds) return result;
+  constexpr double largest_share = 0.32, smallest_share = 0.008;
+  const std::vector<Limit> limits =
+      limits_of_parameters(follower, system, from, amplitude, largest_share, smallest_share);
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    result.point.orbit.par(system.free_parameters()[i] - 1) = limits[i].value;
+    result.uncertainties.push_back(limits[i].uncertainty);
   }
-  constexpr double small_enough = 2e-3;
-  if (reached > small_enough) return std::nullopt;
-  if (are_folds) put_limits(follower, system, from, trend, here.orbit);
-  return here;
+  return result;
+}
+
+std::string tangent_release(PathFollower& follower, const DefiningSystem& system, const PathPoint& from) {
+  constexpr double small = 0.05, largest_of_limit = 32.0;
+  const int m = system.segments();
+  int flight = -1;
+  for (int s = 0; s < m && m > 1; ++s)
+    if (const auto share = share_of_release(system, from.orbit, s); share && *share < small) flight = (s + 1) % m;
+  if (flight < 0) return "";
+  const auto duration = [flight](const Orbit& x) { return x.duration(flight); };
+  const Shrinking what{
+      duration, [flight](const PathPoint& at) { return at.tangent.durations(flight) / at.orbit.duration(flight); },
+      [&](const Orbit&, const Orbit& y) { return duration(y) > 0.0; }, duration};
+  const double now = duration(from.orbit);
+  std::string text =
+      "the release from contact becomes tangential: all flights shrink to nothing, and beyond it the orbit "
+      "stays in contact";
+  const std::vector<Limit> limits = limits_of_parameters(follower, system, from, what, largest_of_limit * now, now);
+  for (std::size_t i = 0; i < limits.size(); ++i)
+    text += fmt::format("{}{} = {} +- {:.0e}", i > 0 ? ", " : "; that is at ",
+                        system.system().parameter_name(system.free_parameters()[i]),
+                        known_digits(limits[i].value, limits[i].uncertainty), limits[i].uncertainty);
+  return text;
 }
 
 }  // namespace tchat

@@ -128,6 +128,8 @@ double deviation_cosine(const Orbit& x, const Orbit& y, int orbits) {
   return sizes > 0.0 ? sums.both / sizes : 0.0;
 }
 
+double deviation_norm(const Orbit& x) { return std::sqrt(products_of_deviations(x.states, x.states, 1).x); }
+
 double deviation_growth(const Orbit& x, const Eigen::MatrixXd& direction, int orbits) {
   const Products sums = products_of_deviations(x.states, direction, orbits);
   return sums.both / sums.x;

@@ -26,6 +26,8 @@ bool is_smooth(const DefiningSystem& system);
 /// About -1 where a step has led through an equilibrium: beyond it the branch consists of the same orbits, begun half a
 /// turn later.
 double deviation_cosine(const Orbit& x, const Orbit& y, int orbits = 1);
+/// The norm of the deviations of all nodes' states from their means.
+double deviation_norm(const Orbit& x);
 /// What a step of unit length along `direction`, a vector of states, adds to x's deviation from its mean, as a share of
 /// the deviation, in its own direction.
 double deviation_growth(const Orbit& x, const Eigen::MatrixXd& direction, int orbits = 1);

@@ -15,6 +15,7 @@
 #include "kinds/orbit_check.hpp"
 #include "model/events.hpp"
 #include "orbit/collocation_rule.hpp"
+#include "orbit/equilibrium_system.hpp"
 #include "orbit/ring_system.hpp"
 #include "settings/run_settings.hpp"
 #include "stability/bifurcation_tests.hpp"
@@ -102,14 +103,20 @@ SpecialPoint RingAnalysis::shrunk(const Orbit& x, bool are_folds) const {
                                              : PointType::hopf;
   const int n = x.shape.dimension;
   const CollocationRule rule(x.shape.collocation);
-  const Eigen::VectorXd means = Eigen::VectorXd::NullaryExpr(n, [&](Eigen::Index i) {
+  Eigen::VectorXd point = Eigen::VectorXd::NullaryExpr(n, [&](Eigen::Index i) {
     return solution_measure(x, rule, Eigen::VectorXd::Ones(n), n + 1 + static_cast<int>(i));
   });
+  if (omega) {  // means differ from the equilibrium by the square of the amplitude
+    const int field = system_.signature().front().field;
+    const Eigen::VectorXd sizes = state_sizes(system_.system(), system_.signature(), x);
+    if (const auto found = find_equilibrium(system_.system(), field, point, x.par.data(), {}, sizes))
+      point = found->state;
+  }
   return {type,
           {},
           false,
           fmt::format("the orbit has shrunk to a point, {}: an equilibrium, where the {} ends{}",
-                      state_text(system_.system(), x, means.data()),
+                      state_text(system_.system(), x, point.data()),
                       are_folds ? "curve of folds" : "branch of periodic orbits",
                       omega ? fmt::format(" ({}, omega = {:.6g})", what, *omega) : "")};
 }

@@ -299,6 +299,42 @@ z' = -z + 0.3*x^2 + b1
   CHECK(value_of(back, "LP", "b1") == Approx(-0.0625).epsilon(1e-8));
 }
 
+TEST_CASE("folds of AUTO's abc end at both generalised Hopf points, whatever the step, and do not go back over") {
+  const Workspace workspace;
+  workspace.write("abc.tch", R"(par D=0.1, alpha=1, beta=1.55, B=8, sigma=0.04
+init u1=0.1
+rate = D*exp(u3)
+u1' = -u1 + rate*(1 - u1)
+u2' = -u2 + rate*(1 - u1 - sigma*u2)
+u3' = -u3 - beta*u3 + rate*B*(1 - u1 + alpha*sigma*u2)
+)");
+  workspace.succeed("simulate abc --dat s -q");
+  workspace.succeed("run abc -c s -d s -o eq DS=0.01 DSMAX=0.05 NMX=500 RL1=0.5");
+  // The first Lyapunov coefficient is 0 on the curve of Hopf points: another condition, of equilibria alone.
+  const std::string hopf = workspace
+                               .succeed(Words{"run", "abc", "-c", "r.eq", "-s", "eq", "-o", "h", "IRS=HB3", "ISW=2",
+                                              "ICP=[D,alpha]", "DS=-0.01", "DSMAX=0.05", "NMX=200", "RL0=0.1"})
+                               .out;
+  workspace.succeed("run abc -c r.eq -s eq -o c IRS=HB3 IPS=180 ISW=-1 NTST=60 NMX=200");
+  INFO(hopf);
+  REQUIRE(count_of(hopf, "\n  GH label ") == 2);
+  const std::string second = hopf.substr(hopf.rfind("\n  GH label "));
+  const std::string step = GENERATE("0.02", "0.05", "0.2");
+  for (const bool is_second : {false, true}) {
+    const std::string folds =
+        workspace
+            .succeed(Words{"run", "abc", "-c", "r.c", "-s", "c", "-o", "f", "IRS=LP1", "ISW=2", "ICP=[D,alpha]",
+                           is_second ? "DS=-0.01" : "DS=0.01", "DSMAX=" + step, "NMX=700", "RL0=0.1", "RL1=0.6"})
+            .out;
+    INFO(folds);
+    const std::string& expected = is_second ? second : hopf;
+    CHECK(value_of(folds, "GH", "D") == Approx(value_of(expected, "GH", "D")).margin(5e-9));
+    CHECK(value_of(folds, "GH", "alpha") == Approx(value_of(expected, "GH", "alpha")).margin(1e-7));
+    CHECK(contains(folds, "its parameters are known to"));
+    CHECK(count_of(folds, "\n  CP label ") == (is_second ? 1 : 0));
+  }
+}
+
 TEST_CASE("where the first parameter turns along a curve of folds or doublings there is a label") {
   const Workspace workspace;
   // In polar coordinates r' = -r ((r - 2)^2 - (p - q^2)): folds at p = q^2.
