@@ -286,17 +286,15 @@ class ImpactFlights {
     SmallMatrix matrix;
   };
 
-  /// Nothing where there is no flight that ends before the acceleration has led away.
-  std::optional<Solved> solve(const GaussRule& rule, const Point& from) const {
+  /// One that ends about this time after `from`; nothing where Newton's method finds none.
+  std::optional<Solved> solve(const GaussRule& rule, const Point& from, double about) const {
     constexpr int most_iterations = 20;
     constexpr double solved = 1e-15;
     constexpr int enough = 5;          // iterations, after which moves that do not get smaller are rounding,
     constexpr double rounding = 1e-3;  // at most this: near the limit v is what is left of far larger rates
-    const double a = acceleration(from.x.data(), from.par.data());
-    if (!(a < 0.0)) return std::nullopt;
     const State<double> f = field(from.x.data(), from.par.data());
     Flight<double> flight(rule.stages() * n + 1);
-    flight.back() = -2.0 * rate(from.x.data(), from.par.data()) / a;
+    flight.back() = about;
     for (std::size_t j = 0; j < rule.stages(); ++j)
       for (std::size_t k = 0; k < n; ++k) flight[j * n + k] = from.x[k] + rule.c(j) * flight.back() * f[k];
     double last = HUGE_VAL;
@@ -324,13 +322,39 @@ class ImpactFlights {
     return true;
   }
 
-  /// The flight in the fewest intervals that resolve it.
+  /// The time of the first stage below the surface, which the flight has passed before it ends; nothing where it ends
+  /// with the next impact. By the rule for h / t, where nothing cancels.
+  std::optional<double> time_below(const Solved& solved, const double* par) const {
+    const std::size_t stages = solved.rule.stages();
+    for (std::size_t i = 0; i < stages; ++i) {
+      double height_by_time = 0.0;
+      for (std::size_t j = 0; j < stages && solved.rule.a(i, j) != 0.0; ++j)
+        height_by_time += solved.rule.a(i, j) * rate(&solved.flight[j * n], par);
+      if (!(height_by_time > 0.0)) return solved.rule.c(i) * solved.flight.back();
+    }
+    return std::nullopt;
+  }
+
+  /// The flight to the next impact, in the fewest intervals that resolve it; nothing where it is longer than that.
   std::optional<Solved> resolved_flight(const Point& from) const {
     constexpr std::size_t most_intervals = 8;
-    for (std::size_t intervals = 1;; intervals *= 2) {
-      std::optional<Solved> solved = solve(GaussRule(intervals), from);
-      if (!solved || intervals == most_intervals || is_resolved(*solved, from.par.data())) return solved;
+    constexpr int most_tries = 4;
+    const double a = acceleration(from.x.data(), from.par.data());
+    if (!(a < 0.0)) return std::nullopt;
+    double about = -2.0 * rate(from.x.data(), from.par.data()) / a;
+    int tries = 0;
+    for (std::size_t intervals = 1; intervals <= most_intervals;) {
+      std::optional<Solved> solved = solve(GaussRule(intervals), from, about);
+      if (!solved) return std::nullopt;
+      if (const auto earlier = time_below(*solved, from.par.data())) {
+        if (++tries > most_tries) return std::nullopt;
+        about = *earlier;
+        continue;
+      }
+      if (is_resolved(*solved, from.par.data())) return solved;
+      intervals *= 2;
     }
+    return std::nullopt;
   }
 
   static void take_if_larger(const std::array<State<double>, 3>& by, const std::array<std::size_t, 3>& states,
