@@ -38,9 +38,10 @@ std::string fault_of(const tchat_problem& table, const tchat_chatter& mode) {
   const auto outside = [](int number, int count) { return number < 1 || number > count; };
   if (outside(mode.field, table.fields) || outside(mode.contact, table.fields))
     return fmt::format("has the fields {} and {}, there are 1..{}", mode.field, mode.contact, table.fields);
-  if (outside(mode.event, table.events) || outside(mode.release, table.events) || outside(mode.margin, table.events))
-    return fmt::format("has the event functions {}, {} and {}, there are 1..{}", mode.event, mode.release, mode.margin,
-                       table.events);
+  if (outside(mode.event, table.events) || outside(mode.release, table.events) || outside(mode.margin, table.events) ||
+      (mode.time != 0 && outside(mode.time, table.events)))
+    return fmt::format("has the event functions {}, {}, {} and {}, there are 1..{}", mode.event, mode.release,
+                       mode.margin, mode.time, table.events);
   if (outside(mode.impact, table.jumps) || outside(mode.limit, table.jumps) || outside(mode.leave, table.jumps))
     return fmt::format("has the jumps {}, {} and {}, there are 1..{}", mode.impact, mode.limit, mode.leave,
                        table.jumps);

@@ -78,7 +78,7 @@ class CppWriter {
         "  static constexpr int dimension = {}, parameters = {};\n"
         "  static constexpr int fields = {}{}{};\n{}",
         model_.names.states().size(), model_.parameter_values.size(), field_count(),
-        count("events", model_.events.size() + 2 * (model_.slides.size() + model_.contacts.size())),
+        count("events", model_.events.size() + 2 * model_.slides.size() + 3 * model_.contacts.size()),
         count("jumps", model_.jumps.size() + 2 * model_.contacts.size()),
         model_.file.modes.empty() ? "" : dimensions());
   }
@@ -121,8 +121,8 @@ class CppWriter {
     for (const ProblemModel::Contact& c : model_.contacts)
       modes.push_back(
           fmt::format("{{.field = {}, .event = {}, .impact = {}, .contact = {}, .release = {}, .limit = "
-                      "{}, .margin = {}, .leave = {}}}",
-                      c.field, c.event, c.impact, c.contact, c.release, c.limit, c.margin, c.leave));
+                      "{}, .margin = {}, .leave = {}, .time = {}}}",
+                      c.field, c.event, c.impact, c.contact, c.release, c.limit, c.margin, c.leave, c.time));
     return fmt::format("  static constexpr tchat::Chatter {}[] = {{\n      {}}};\n", contacts_member,
                        fmt::join(modes, ",\n      "));
   }
@@ -159,7 +159,7 @@ class CppWriter {
     std::vector<std::string> jumps = names_of_parts(model_.jumps);
     for (const ProblemModel::Contact& contact : model_.contacts) {
       fields.push_back(contact.name);
-      events.insert(events.end(), {contact.release_name, contact.margin_name});
+      events.insert(events.end(), {contact.release_name, contact.margin_name, contact.time_name});
       jumps.insert(jumps.end(), {contact.limit_name, contact.leave_name});
     }
     return strings("state_names", model_.names.states()) + strings("parameter_names", parameters) +

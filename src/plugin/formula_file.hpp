@@ -52,7 +52,7 @@ struct SlideStatement {
 
 /// contact NAME on SURFACE until RELEASE: FIELD, IMPACT -> LIMIT: where impacts in FIELD at SURFACE accumulate, LIMIT
 /// is the jump to contact, in which the field NAME holds until RELEASE. The statement makes NAME, RELEASE, LIMIT, the
-/// event LIMIT_margin and the jump NAME_end (tchat/chatter.hpp).
+/// events LIMIT_margin and LIMIT_time and the jump NAME_end (tchat/chatter.hpp).
 struct ContactStatement {
   Token name, surface, release, field, impact, limit;
 };

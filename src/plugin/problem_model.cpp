@@ -342,6 +342,8 @@ class ModelCheck {
   }
   /// The event function that says how far chatter is from being incomplete.
   static Token margin_of(const ContactStatement& contact) { return with_ending(contact.limit, "_margin"); }
+  /// The event function that is the time which the impacts of the limit take.
+  static Token time_of(const ContactStatement& contact) { return with_ending(contact.limit, "_time"); }
   /// The jump after contact.
   static Token end_of(const ContactStatement& contact) { return with_ending(contact.name, "_end"); }
 
@@ -357,19 +359,20 @@ class ModelCheck {
         event_names_.add(contact.release);
         jump_names_.add(contact.limit);
         event_names_.add(margin_of(contact));
+        event_names_.add(time_of(contact));
         jump_names_.add(end_of(contact));
       });
     for (const ContactStatement& contact : file().contacts)
       collect([&] {
         const int field = own_part(field_number(contact.field), own_fields, contact.field);
-        const Token margin = margin_of(contact), end = end_of(contact);
+        const Token margin = margin_of(contact), time = time_of(contact), end = end_of(contact);
         model_.contacts.push_back({contact.name.text, contact.release.text, contact.limit.text, margin.text, end.text,
-                                   with_all_states(field, contact.field),
+                                   time.text, with_all_states(field, contact.field),
                                    own_part(event_names_.required(contact.surface), own_events, contact.surface),
                                    own_part(jump_names_.required(contact.impact), own_jumps, contact.impact),
                                    field_names_.number(contact.name.text), event_names_.number(contact.release.text),
                                    jump_names_.number(contact.limit.text), event_names_.number(margin.text),
-                                   jump_names_.number(end.text)});
+                                   jump_names_.number(end.text), event_names_.number(time.text)});
       });
   }
 

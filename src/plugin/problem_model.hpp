@@ -33,8 +33,8 @@ struct ProblemModel {
   };
   /// A mode of contact after chatter (tchat::Chatter), numbers from 1: what it makes counts behind all others.
   struct Contact {
-    std::string name, release_name, limit_name, margin_name, leave_name;
-    int field, event, impact, contact, release, limit, margin, leave;
+    std::string name, release_name, limit_name, margin_name, leave_name, time_name;
+    int field, event, impact, contact, release, limit, margin, leave, time;
   };
   /// Which field follows at a surface, by a sliding mode (from 0).
   struct Following {

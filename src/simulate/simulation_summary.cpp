@@ -159,15 +159,25 @@ std::string why_it_ended(const HybridSystem& system, const SimulationResult& res
   const SimulatedSegment& last = result.last;
   if (result.accumulation) {
     const ChatteringDetector::Accumulation& limit = *result.accumulation;
+    const IndexVector& v = last.index;
+    const auto name = [&](FunctionKind kind, int index) { return system.function_name(kind, index); };
+    const std::string cure =
+        limit.pattern == 1
+            ? fmt::format(
+                  "needs a mode of its own: in formulas `contact resting on {} until lifts: {}, {} -> settled`\n"
+                  "if it rests there (page chatter).\n",
+                  name(FunctionKind::event, v.event), name(FunctionKind::field, v.field),
+                  name(FunctionKind::jump, v.jump))
+            : "(sticking, rolling) needs a mode of its own in the problem.\n";
     return fmt::format(
         "Events accumulate (chattering): the last {} are of pattern length {}, each duration {:.6g} times that of one "
         "pattern before.\nThe limit is at t = {}{}, {:.3g} after the last event, at about x = {}. The "
         "simulation "
-        "ends there:\nwhat follows (sticking, rolling) needs a mode of its own in the problem.\n",
+        "ends there:\nwhat follows {}",
         result.events > 20 ? 20 : result.events, limit.pattern, limit.ratio,
         known_digits(last.end_time() + limit.remaining, limit.uncertainty),
         limit.uncertainty > 0.0 ? fmt::format(" +- {:.1e}", limit.uncertainty) : "", limit.remaining,
-        state_text(last.after));
+        state_text(last.after), cure);
   }
   if (result.end == MotionEnd::escapes)
     return fmt::format("The motion escapes: at t = {:.6g} it is at x = {}, far beyond where it has been.\n",

@@ -1,9 +1,11 @@
 // Orbits with infinitely many impacts, from simulation to where chatter becomes incomplete.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
 
 #include "end_to_end/workspace.hpp"
+#include "support/ball_impacts.hpp"
 
 using namespace test_support;
 
@@ -68,6 +70,65 @@ TEST_CASE("a branch of orbits with complete chatter ends where chatter becomes i
     CHECK_FALSE(contains(outcome.out, "inadmissible"));
   }
   CHECK(workspace.tchat("verify q.locked -p ball").status == 0);
+}
+
+TEST_CASE("the time at rest falls to zero like a power of the distance from where chatter becomes incomplete") {
+  const Workspace workspace;
+  workspace.write("ball.tch", ball);
+  workspace.succeed("simulate ball --dat rest -q");
+  workspace.succeed(std::vector<std::string>{"run", "ball", "-c", "rest", "-d", "rest", "-o", "locked", "RL1=2",
+                                             "DSMAX=0.05", "NMX=400", "ICP=[Gamma,end(settled_time,4)]",
+                                             "UZR={Gamma: [1.596, 1.597, 1.5973, 1.59734, 1.597348, 1.5973487]}"});
+  const std::vector<PointRow> rows = workspace.points("locked").front().rows;
+  std::vector<double> left, at_rest;
+  for (const SolutionEntry& orbit : workspace.solutions("locked")) {
+    if (orbit.type != -4 || left.size() == 6) continue;  // the last one is GR
+    left.push_back(1.59734883119515 - orbit.parameter(1));
+    const auto row = std::find_if(rows.begin(), rows.end(), [&](const PointRow& r) { return r.label == orbit.label; });
+    REQUIRE(row != rows.end());
+    constexpr std::size_t monitor = 6;  // behind Gamma, the norm and four maxima
+    at_rest.push_back(orbit.parameter(65) - row->values[monitor]);
+  }
+  // The impacts where they become incomplete are self-similar, which has the exponent; the factor is known to four
+  // digits.
+  constexpr double exponent = 0.603031441718;
+  REQUIRE(left.size() == 6);
+  for (std::size_t k = 3; k < 6; ++k)
+    CHECK(std::abs(std::log(at_rest[k] / at_rest[k - 1]) / std::log(left[k] / left[k - 1]) - exponent) < 1e-3);
+  CHECK(std::abs(at_rest[5] / std::pow(left[5], exponent) - 4.6235) < 2e-3);
+}
+
+TEST_CASE("towards a tangential release all flights shrink to nothing, and the branch ends with its limit") {
+  const Workspace workspace;
+  workspace.write("ball.tch", ball);
+  workspace.succeed("simulate ball --dat rest -q");
+  const std::string out = workspace.succeed("run ball -c rest -d rest -o low RL0=0.9 DS=-0.01 NMX=300").out;
+  INFO(out);
+  const std::size_t at = out.find("Gamma = ", out.find("tangential"));
+  REQUIRE(at != std::string::npos);
+  double value = 0.0, uncertainty = 0.0;
+  REQUIRE(std::sscanf(out.c_str() + at, "Gamma = %lf +- %lf", &value, &uncertainty) == 2);
+  CHECK(std::abs(value - 1.0) <= uncertainty);
+  CHECK(uncertainty < 1e-3);
+  CHECK_FALSE(contains(out, "inadmissible"));
+}
+
+TEST_CASE("an orbit with chatter that takes two periods of the table ends where its chatter becomes incomplete") {
+  const Workspace workspace;
+  workspace.write("ball.tch", ball);
+  const std::string found = workspace.succeed("simulate ball PAR(Gamma)=4.5 PAR(r)=0.2 --max-period 64 --dat two").out;
+  INFO(found);
+  CHECK(contains(found, "period 12.56637061"));
+  CHECK(contains(found, "infinitely many impacts"));
+  const std::string out = workspace.succeed("run ball -c two -d two -o two DS=-0.02 DSMAX=0.1 RL0=4 NMX=300").out;
+  INFO(out);
+  CHECK(contains(out, "chatter becomes incomplete"));
+  double low = 4.3, high = 4.6;  // impacts accumulate above
+  for (int k = 0; k < 45; ++k) {
+    const double middle = 0.5 * (low + high);
+    (BallImpacts::time_until_rest(BallImpacts(middle, 0.2)) < 0 ? low : high) = middle;
+  }
+  CHECK(std::abs(workspace.points("two").front().rows.back().values[0] - high) < 1e-8);
 }
 
 TEST_CASE("the curve on which chatter becomes incomplete leads from one restitution to another") {

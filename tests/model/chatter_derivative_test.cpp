@@ -1,11 +1,15 @@
-// The derivative of the time until a ball rests on its table, against that of many impacts with 50 digits; the limit of a
-// relief valve's impacts, whose flights have no closed form, against impacts one by one with 19 digits.
+// The derivative of the time until a ball rests on its table, against that of many impacts with 50 digits; the limit of
+// a relief valve's impacts, whose flights have no closed form, against impacts one by one with 19 digits.
 #include <array>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <tchat/problem.hpp>
 #include <vector>
+
+#include "support/valve_flight.hpp"
+
+using test_support::ValveFlight;
 
 namespace {
 
@@ -15,7 +19,7 @@ using Real = boost::multiprecision::cpp_bin_float_50;
 struct Ball {
   static constexpr int dimension = 4, parameters = 2, fields = 2, events = 3, jumps = 4;
   static constexpr tchat::Chatter chatter{
-      .field = 1, .event = 1, .impact = 1, .contact = 2, .release = 2, .limit = 3, .margin = 3, .leave = 4};
+      .field = 1, .event = 1, .impact = 1, .contact = 2, .release = 2, .limit = 3, .margin = 3, .leave = 4, .time = 0};
   template <class T>
   void field(int, const T* y, const T* par, T* f) const {
     const T growth = 1.0 - (y[2] * y[2] + y[3] * y[3]) / (par[0] * par[0]);
@@ -59,8 +63,8 @@ Gradient derivatives_of_time(double t0, double V0, double gamma0, double r0, int
     }
     const Real by_s = after - s - gamma * cos(t + s);
     for (std::size_t i = 0; i < 4; ++i) {
-      const Real of_h = gamma * (cos(t) - cos(t + s)) * of_t[i] + s * of_after[i] +
-                        (i == 2 ? Real(sin(t) - sin(t + s)) : Real(0));
+      const Real of_h =
+          gamma * (cos(t) - cos(t + s)) * of_t[i] + s * of_after[i] + (i == 2 ? Real(sin(t) - sin(t + s)) : Real(0));
       const Real of_s = -of_h / by_s;
       of_total[i] += of_s;
       of_t[i] += of_s;
@@ -89,7 +93,7 @@ std::array<double, 4> derivatives_of_limit(double t0, double V0, double gamma0, 
 struct Valve {
   static constexpr int dimension = 3, parameters = 2, fields = 2, events = 3, jumps = 4;
   static constexpr tchat::Chatter chatter{
-      .field = 1, .event = 1, .impact = 1, .contact = 2, .release = 2, .limit = 3, .margin = 3, .leave = 4};
+      .field = 1, .event = 1, .impact = 1, .contact = 2, .release = 2, .limit = 3, .margin = 3, .leave = 4, .time = 0};
   template <class T>
   void field(int, const T* y, const T* par, T* f) const {
     f[0] = y[1];
@@ -105,73 +109,6 @@ struct Valve {
     for (int i = 0; i < dimension; ++i) g[i] = y[i];
     if (k == 1) g[1] = -par[1] * y[1];
   }
-};
-
-/// Its Taylor coefficients, from which flights are followed with 19 digits.
-class ValveFlight {
- public:
-  static constexpr std::size_t order = 24;
-  using Number = long double;
-  Number lift = 0, speed = 0, pressure = 10, time = 0;
-  explicit ValveFlight(double q) : q_(q) {}
-
-  /// To the next impact. Where the flight begins the lift and its rates up to the third may be zero.
-  void fly() {
-    constexpr Number longest = 0.02L;
-    for (;;) {
-      expand();
-      // A first root in this step, where the lift has risen before.
-      const Number step = std::min(longest, flight_scale());
-      if (at(y1_, step) < 0) {
-        Number low = step / 1e6L, high = step;
-        for (int k = 0; k < 90; ++k) ((low + high) / 2 * by_time((low + high) / 2) > 0 ? low : high) = (low + high) / 2;
-        advance(low);
-        return;
-      }
-      advance(step);
-    }
-  }
-
- private:
-  using Series = std::array<Number, order + 1>;
-  void expand() {
-    Series root{};
-    y1_ = y2_ = y3_ = {};
-    y1_[0] = lift, y2_[0] = speed, y3_[0] = pressure, root[0] = std::sqrt(pressure);
-    for (std::size_t k = 0; k < order; ++k) {
-      const auto next = static_cast<Number>(k + 1);
-      Number flow = 0, squares = 0;
-      for (std::size_t i = 0; i <= k; ++i) flow += y1_[i] * root[k - i];
-      y1_[k + 1] = y2_[k] / next;
-      y2_[k + 1] = (-1.25L * y2_[k] - y1_[k] - (k == 0 ? 10 : 0) + y3_[k]) / next;
-      y3_[k + 1] = 20 * ((k == 0 ? q_ : 0) - flow) / next;
-      for (std::size_t i = 1; i <= k; ++i) squares += root[i] * root[k + 1 - i];
-      root[k + 1] = (y3_[k + 1] - squares) / (2 * root[0]);
-    }
-  }
-  static Number at(const Series& y, Number s) {
-    Number value = 0;
-    for (std::size_t k = order + 1; k-- > 0;) value = value * s + y[k];
-    return value;
-  }
-  /// y1 / s, without its first coefficient where that is zero.
-  Number by_time(Number s) const {
-    Number value = 0;
-    for (std::size_t k = order + 1; k-- > 1;) value = value * s + y1_[k];
-    return value + y1_[0] / s;
-  }
-  /// Twice the time that the next impact is away if the acceleration stays: steps are short where flights are.
-  Number flight_scale() const {
-    const Number about = y1_[2] < 0 ? -y1_[1] / y1_[2] : 1;
-    return y1_[0] == 0 && about > 0 ? 2 * about : 1;
-  }
-  void advance(Number s) {
-    lift = at(y1_, s), speed = at(y2_, s), pressure = at(y3_, s);
-    time += s;
-  }
-
-  Number q_;
-  Series y1_{}, y2_{}, y3_{};
 };
 
 }  // namespace
@@ -200,7 +137,7 @@ TEST_CASE("the time until a relief valve rests on its seat, and its pressure the
   const std::array<double, 2> par{0.1, 0.5};
   const Valve valve;
   const tchat::ChatterFunctions<Valve> functions(valve, Valve::chatter);
-  ValveFlight flight(par[0]);
+  ValveFlight flight(par[0], par[1]);
   double summed = -1.0, pressure = 0.0;
   for (int impact = 0; impact < 60; ++impact) {
     flight.fly();
@@ -210,8 +147,7 @@ TEST_CASE("the time until a relief valve rests on its seat, and its pressure the
       summed = static_cast<double>(flight.time) + rest.time;
       pressure = rest.state[2];
     }
-    flight.lift = 0;
-    flight.speed *= -static_cast<long double>(par[1]);
+    flight.hit();
     if (flight.speed < 1e-13L) break;
   }
   CHECK(flight.speed < 1e-12L);

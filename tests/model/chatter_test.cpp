@@ -5,13 +5,15 @@
 #include <random>
 #include <tchat/problem.hpp>
 
+#include "support/ball_impacts.hpp"
+
 namespace {
 
 /// height, velocity, table and its other coordinate in units; Gamma, r and the units are parameters.
 struct BallInUnits {
   static constexpr int dimension = 4, parameters = 6, fields = 2, events = 3, jumps = 4;
   static constexpr tchat::Chatter chatter{
-      .field = 1, .event = 1, .impact = 1, .contact = 2, .release = 2, .limit = 3, .margin = 3, .leave = 4};
+      .field = 1, .event = 1, .impact = 1, .contact = 2, .release = 2, .limit = 3, .margin = 3, .leave = 4, .time = 0};
 
   template <class T>
   void field(int, const T* y, const T* par, T* f) const {
@@ -42,78 +44,19 @@ using Parameters = std::array<double, 6>;
 const BallInUnits ball;
 const Functions functions(ball, BallInUnits::chatter);
 
-/// The impacts of a ball that the table leaves at sin(t) = 1 / Gamma, one after the other.
-class Impacts {
- public:
-  Impacts(double gamma, double r) : gamma_(gamma), r_(r), released_(std::asin(1.0 / gamma)), time_(released_) {
-    velocity_ = gamma_ * std::cos(time_);
-    // The first flight: h is zero to third order where it begins.
-    const auto height = [this](long double s) {
-      return 1.0L + velocity_ * s - s * s / 2 - gamma_ * std::sin(released_ + s);
-    };
-    long double s = 0.05L;
-    while (height(s) > 0) s += 1e-3L;
-    fly(zero(height, s - 1e-3L, s));
-  }
+using Impacts = test_support::BallImpacts;
 
-  /// From a state before an impact on.
-  Impacts(double gamma, double r, double time, double relative_velocity)
-      : gamma_(gamma), r_(r), released_(time), time_(time), velocity_(gamma_ * std::cos(time_) + relative_velocity) {}
-
-  long double time() const { return time_ - released_; }
-  State before(const Parameters& par) const {
-    const long double sine = gamma_ * std::sin(time_), cosine = gamma_ * std::cos(time_);
-    return {static_cast<double>(sine / par[2]), static_cast<double>(velocity_ / par[3]),
-            static_cast<double>(sine / par[4]), static_cast<double>(cosine / par[5])};
-  }
-
-  /// False where the table has begun to fall faster than the ball.
-  bool next() {
-    velocity_ = (1.0L + r_) * gamma_ * std::cos(time_) - r_ * velocity_;
-    const long double rate = velocity_ - gamma_ * std::cos(time_), acceleration = gamma_ * std::sin(time_) - 1.0L;
-    if (!(acceleration < 0)) return false;
-    const auto height_by_time = [&](long double s) { return rate - s / 2 - gamma_ * curved(s); };
-    const long double about = -2 * rate / acceleration;
-    for (long double s = about / 100; s < 30 * about && s < 1.5L; s += about / 100)
-      if (height_by_time(s) <= 0) return fly(zero(height_by_time, s - about / 100, s)), true;
-    return false;
-  }
-  long double relative_velocity() const { return std::abs(velocity_ - gamma_ * std::cos(time_)); }
-
- private:
-  template <class Function>
-  static long double zero(const Function& f, long double low, long double high) {
-    for (int k = 0; k < 80; ++k) {
-      const long double middle = (low + high) / 2;
-      (f(middle) > 0 ? low : high) = middle;
-    }
-    return low;
-  }
-  /// (sin(t + s) - sin t - s cos t) / s
-  long double curved(long double s) const {
-    const long double sine = std::sin(time_), cosine = std::cos(time_);
-    if (s > 1e-3L) return (std::sin(time_ + s) - sine - s * cosine) / s;
-    return s * (-sine / 2 + s * (-cosine / 6 + s * (sine / 24 + s * (cosine / 120 - s * sine / 720))));
-  }
-  void fly(long double s) {
-    time_ += s;
-    velocity_ -= s;
-  }
-
-  long double gamma_, r_, released_, time_, velocity_ = 0;
-};
-
-/// Impacts until contact is near: the time until then; negative where they come to an end before.
-long double time_until_rest(Impacts impacts) {
-  while (impacts.relative_velocity() > 1e-13L)
-    if (!impacts.next()) return -1;
-  return impacts.time();
+/// The state before an impact.
+State before(const Impacts& impacts, const Parameters& par) {
+  const long double sine = par[0] * std::sin(impacts.phase()), cosine = par[0] * std::cos(impacts.phase());
+  return {static_cast<double>(sine / par[2]), static_cast<double>(impacts.velocity() / par[3]),
+          static_cast<double>(sine / par[4]), static_cast<double>(cosine / par[5])};
 }
 
-/// The same, from the first impact on from which the problem sums all up.
+/// The time until rest, from the first impact on from which the problem sums all up.
 double summed_time(Impacts impacts, const Parameters& par) {
   for (;;) {
-    const State x = impacts.before(par);
+    const State x = before(impacts, par);
     const int before = functions.impacts_before_limit(x.data(), par.data());
     if (before == 0) return static_cast<double>(impacts.time()) + functions.rest(x.data(), par.data()).time;
     if (before < 0 || !impacts.next()) return -1.0;
@@ -130,7 +73,7 @@ TEST_CASE("the time until a ball rests on its table is that of its impacts, one 
   for (const auto& [gamma, r, time] : known) {
     INFO("Gamma = " << gamma << ", r = " << r);
     const Impacts impacts(gamma, r);
-    CHECK(std::abs(static_cast<double>(time_until_rest(impacts)) - time) < 1e-11);
+    CHECK(std::abs(static_cast<double>(Impacts::time_until_rest(impacts)) - time) < 1e-11);
     CHECK(std::abs(summed_time(impacts, {gamma, r, 1, 1, 1, 1}) - time) < 1e-11);
   }
   CHECK(summed_time(Impacts(1.4, 0.7), {1.4, 0.7, 1, 1, 1, 1}) < 0);
@@ -145,7 +88,7 @@ TEST_CASE("for any restitution and in any units chatter is complete, or it is no
     for (std::size_t k = 2; k < par.size(); ++k) par[k] = std::pow(10.0, 18.0 * share(random) - 9.0);
     INFO("Gamma = " << par[0] << ", r = " << par[1]);
     const Impacts impacts(par[0], par[1]);
-    const auto time = static_cast<double>(time_until_rest(impacts));
+    const auto time = static_cast<double>(Impacts::time_until_rest(impacts));
     const double summed = summed_time(impacts, par);
     CHECK((time < 0) == (summed < 0));
     if (time >= 0) CHECK(std::abs(summed - time) < 1e-10);
@@ -165,9 +108,9 @@ TEST_CASE("from any impact on, also where the next flights are long, what is sum
     INFO("Gamma = " << gamma << ", r = " << r << ", at t = " << phase << " with v = " << velocity);
     const Parameters par{gamma, r, 1, 1, 1, 1};
     const Impacts impacts(gamma, r, phase, velocity);
-    const State x = impacts.before(par);
+    const State x = before(impacts, par);
     const int before = functions.impacts_before_limit(x.data(), par.data());
-    const auto time = static_cast<double>(time_until_rest(impacts));
+    const auto time = static_cast<double>(Impacts::time_until_rest(impacts));
     near += before == 0;
     far += before != 0;
     if (before != 0) continue;
@@ -187,7 +130,7 @@ TEST_CASE("derivatives of the limit of chatter agree with differences, and conta
   const Parameters par{1.2, 0.5, 1, 1, 1, 1};
   Impacts impacts(par[0], par[1]);
   impacts.next();
-  const State x = impacts.before(par);
+  const State x = before(impacts, par);
   std::array<Dual, 4> moving, limit;
   std::array<Dual, 6> with;
   for (std::size_t i = 0; i < 4; ++i) moving[i] = x[i], moving[i].derivative[i] = 1.0;

@@ -11,6 +11,7 @@
 ///
 /// has more functions: as field 2 the motion in contact, as event function 2 -a, where contact ends, as jump 3 the
 /// limit of all impacts from one on, and as event function 3 a margin, which is zero where there is no limit any more.
+/// With `.time = 4` event function 4 is the time that these impacts take, for monitors.
 /// Jump 4, with which field 1 goes on after contact, puts back on C what integration has left beside it. `fields`,
 /// `events` and `jumps` count them; field(), event() and jump() are then called with the other ones only.
 ///
@@ -33,6 +34,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -69,15 +71,16 @@ constexpr ChatterFault chatter_fault(const Modes& modes, int fields, int events,
   const auto outside = [](int number, int count) { return number < 1 || number > count; };
   for (const Chatter& mode : modes) {
     if (outside(mode.field, fields) || outside(mode.contact, fields)) return ChatterFault::field_range;
-    if (outside(mode.event, events) || outside(mode.release, events) || outside(mode.margin, events))
+    if (outside(mode.event, events) || outside(mode.release, events) || outside(mode.margin, events) ||
+        (mode.time != 0 && outside(mode.time, events)))
       return ChatterFault::event_range;
     if (outside(mode.impact, jumps) || outside(mode.limit, jumps) || outside(mode.leave, jumps))
       return ChatterFault::jump_range;
   }
   for (const Chatter& a : modes)
     for (const Chatter& b : modes)
-      if (a.field == b.contact || a.event == b.release || a.event == b.margin || a.impact == b.limit ||
-          a.impact == b.leave || a.limit == b.leave)
+      if (a.field == b.contact || a.event == b.release || a.event == b.margin || a.event == b.time ||
+          a.impact == b.limit || a.impact == b.leave || a.limit == b.leave)
         return ChatterFault::made_of_itself;
   return ChatterFault::none;
 }
@@ -184,6 +187,16 @@ class ChatterFunctions : ImpactFlights<Problem> {
     try {
       const Impacts<double> impacts = impacts_from(x, par);
       return impacts.is_complete ? impacts.near : -1;
+    } catch (const NoValue&) {
+      return -1;
+    }
+  }
+
+  /// The same from the impact on that the motion above the surface, at x, comes to.
+  int impacts_before_limit_from(const double* x, const double* par) const {
+    try {
+      const std::optional<State<double>> impact = this->next_impact(x, par);
+      return impact ? impacts_before_limit(impact->data(), par) : -1;
     } catch (const NoValue&) {
       return -1;
     }

@@ -2,7 +2,8 @@
 /// from one impact to the next. Included by tchat/chatter.hpp.
 ///
 /// A flight has the time t as an unknown. In place of h = 0 at its end, with its other root t = 0, stands
-/// h / t = sum_i b_i v(X_i) = 0 over the Gauss points, v = h_x f. Newton's method solves it for numbers; as many more
+/// h / t = h_0 / t + sum_i b_i v(X_i) = 0 over the Gauss points, v = h_x f, where h_0 = 0 after an impact. Newton's
+/// method solves it for numbers; as many more
 /// steps with the same matrix as derivatives are nested solve it for these.
 #pragma once
 
@@ -186,7 +187,7 @@ class ImpactFlights {
   /// From y to before the next impact, x; `time` goes on. False where there is none.
   template <class T>
   bool fly(const State<T>& y, const T* par, State<T>& x, T& time) const {
-    const std::optional<Solved> solved = resolved_flight(numbers(y.data(), par));
+    const std::optional<Solved> solved = resolved_flight(numbers(y.data(), par), 0.0);
     if (!solved) return false;
     Flight<T> flight(solved->flight.begin(), solved->flight.end());
     for (int k = 0; k < derivative_depth<T>; ++k) {
@@ -201,6 +202,19 @@ class ImpactFlights {
     }
     time += flight.back();
     return true;
+  }
+
+  /// Before the impact that the motion comes to from x, above the surface; nothing where it leads away.
+  std::optional<State<double>> next_impact(const double* x, const double* par) const {
+    const Point from = numbers(x, par);
+    const std::optional<Solved> solved = resolved_flight(from, height(x, par));
+    if (!solved) return std::nullopt;
+    State<double> end = from.x;
+    for (std::size_t j = 0; j < solved->rule.stages(); ++j) {
+      const State<double> f = field(&solved->flight[j * n], from.par.data());
+      for (std::size_t k = 0; k < n; ++k) end[k] += solved->rule.b(j) * solved->flight.back() * f[k];
+    }
+    return end;
   }
 
  private:
@@ -251,8 +265,10 @@ class ImpactFlights {
     return rest;
   }
 
-  bool linearise(const GaussRule& rule, const double* par, const Flight<double>& flight, SmallMatrix& matrix) const {
+  bool linearise(const GaussRule& rule, const double* par, const Flight<double>& flight, double height,
+                 SmallMatrix& matrix) const {
     const std::size_t stages = rule.stages();
+    matrix(stages * n, stages * n) -= height / (flight.back() * flight.back());
     for (std::size_t j = 0; j < stages; ++j) {
       Moving<static_cast<int>(n), double> at(&flight[j * n], par);
       for (std::size_t k = 0; k < n; ++k) at.state[k].derivative[k] = 1.0;
@@ -287,7 +303,7 @@ class ImpactFlights {
   };
 
   /// One that ends about this time after `from`; nothing where Newton's method finds none.
-  std::optional<Solved> solve(const GaussRule& rule, const Point& from, double about) const {
+  std::optional<Solved> solve(const GaussRule& rule, const Point& from, double height, double about) const {
     constexpr int most_iterations = 20;
     constexpr double solved = 1e-15;
     constexpr int enough = 5;          // iterations, after which moves that do not get smaller are rounding,
@@ -300,8 +316,9 @@ class ImpactFlights {
     double last = HUGE_VAL;
     for (int k = 0; k < most_iterations; ++k) {
       SmallMatrix matrix(units_of(flight));
-      if (!linearise(rule, from.par.data(), flight, matrix)) return std::nullopt;
+      if (!linearise(rule, from.par.data(), flight, height, matrix)) return std::nullopt;
       Flight<double> step = residual(rule, from.x, from.par.data(), flight);
+      step.back() += height / flight.back();
       matrix.solve(step);
       for (std::size_t i = 0; i < flight.size(); ++i) flight[i] -= step[i];
       const double move = std::fabs(step.back() / flight.back());
@@ -324,10 +341,10 @@ class ImpactFlights {
 
   /// The time of the first stage below the surface, which the flight has passed before it ends; nothing where it ends
   /// with the next impact. By the rule for h / t, where nothing cancels.
-  std::optional<double> time_below(const Solved& solved, const double* par) const {
+  std::optional<double> time_below(const Solved& solved, const double* par, double height) const {
     const std::size_t stages = solved.rule.stages();
     for (std::size_t i = 0; i < stages; ++i) {
-      double height_by_time = 0.0;
+      double height_by_time = height / solved.flight.back();
       for (std::size_t j = 0; j < stages && solved.rule.a(i, j) != 0.0; ++j)
         height_by_time += solved.rule.a(i, j) * rate(&solved.flight[j * n], par);
       if (!(height_by_time > 0.0)) return solved.rule.c(i) * solved.flight.back();
@@ -336,17 +353,18 @@ class ImpactFlights {
   }
 
   /// The flight to the next impact, in the fewest intervals that resolve it; nothing where it is longer than that.
-  std::optional<Solved> resolved_flight(const Point& from) const {
+  std::optional<Solved> resolved_flight(const Point& from, double height) const {
     constexpr std::size_t most_intervals = 8;
     constexpr int most_tries = 4;
     const double a = acceleration(from.x.data(), from.par.data());
     if (!(a < 0.0)) return std::nullopt;
-    double about = -2.0 * rate(from.x.data(), from.par.data()) / a;
+    const double v = rate(from.x.data(), from.par.data());
+    double about = -(v + std::sqrt(v * v - 2.0 * a * height)) / a;
     int tries = 0;
     for (std::size_t intervals = 1; intervals <= most_intervals;) {
-      std::optional<Solved> solved = solve(GaussRule(intervals), from, about);
+      std::optional<Solved> solved = solve(GaussRule(intervals), from, height, about);
       if (!solved) return std::nullopt;
-      if (const auto earlier = time_below(*solved, from.par.data())) {
+      if (const auto earlier = time_below(*solved, from.par.data(), height)) {
         if (++tries > most_tries) return std::nullopt;
         about = *earlier;
         continue;

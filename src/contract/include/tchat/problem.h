@@ -50,7 +50,8 @@ typedef struct tchat_sliding {
 /* Chatter, infinitely many impacts in finite time, as one jump: impacts with the jump `impact` at event function
  * `event` in the field `field` may accumulate. Then the jump `limit` leads to contact, with the field `contact` until
  * event function `release`, and from there the jump `leave` back to `field`. Before an impact the event function
- * `margin` is zero where chatter becomes incomplete, and positive where it is complete. All count from 1. */
+ * `margin` is zero where chatter becomes incomplete, and positive where it is complete, and `time`, if it is not 0, the
+ * time that the further impacts take. All count from 1. */
 typedef struct tchat_chatter {
   int32_t field;
   int32_t event;
@@ -60,6 +61,7 @@ typedef struct tchat_chatter {
   int32_t limit;
   int32_t margin;
   int32_t leave;
+  int32_t time;
 } tchat_chatter;
 
 typedef struct tchat_problem {

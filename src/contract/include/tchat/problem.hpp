@@ -301,19 +301,20 @@ class ProblemTable {
   static_assert(chatter_fault(chatter, Problem::fields, event_count(), jump_count()) != ChatterFault::field_range,
                 "tchat: `chatter`: field and contact must be numbers from 1 to `fields`");
   static_assert(chatter_fault(chatter, Problem::fields, event_count(), jump_count()) != ChatterFault::event_range,
-                "tchat: `chatter`: event, release and margin must be numbers from 1 to `events`");
+                "tchat: `chatter`: event, release, margin and time must be numbers from 1 to `events`");
   static_assert(chatter_fault(chatter, Problem::fields, event_count(), jump_count()) != ChatterFault::jump_range,
                 "tchat: `chatter`: impact, limit and leave must be numbers from 1 to `jumps`");
-  static_assert(chatter_fault(chatter, Problem::fields, event_count(), jump_count()) != ChatterFault::made_of_itself,
-                "tchat: `chatter`: contact, release, limit, margin and leave must be functions of their own, which no "
-                "mode is made of");
+  static_assert(
+      chatter_fault(chatter, Problem::fields, event_count(), jump_count()) != ChatterFault::made_of_itself,
+      "tchat: `chatter`: contact, release, limit, margin, time and leave must be functions of their own, which no "
+      "mode is made of");
 
   /// The chatter mode that makes a function; null for the problem's own ones.
   static const Chatter* chatter_of(std::int32_t kind, int index) {
     for (const Chatter& mode : chatter)
       if ((kind == TCHAT_FIELD && index == mode.contact) ||
           (kind == TCHAT_JUMP && (index == mode.limit || index == mode.leave)) ||
-          (kind == TCHAT_EVENT && (index == mode.release || index == mode.margin)))
+          (kind == TCHAT_EVENT && (index == mode.release || index == mode.margin || index == mode.time)))
         return &mode;
     return nullptr;
   }
@@ -323,7 +324,9 @@ class ProblemTable {
                                const T* par, T* out) {
     const ChatterFunctions functions(problem, mode);
     if (kind == TCHAT_FIELD) functions.contact(x, par, out);
-    if (kind == TCHAT_EVENT) out[0] = index == mode.release ? functions.release(x, par) : functions.margin(x, par);
+    if (kind == TCHAT_EVENT && index == mode.release) out[0] = functions.release(x, par);
+    if (kind == TCHAT_EVENT && index == mode.margin) out[0] = functions.margin(x, par);
+    if (kind == TCHAT_EVENT && index == mode.time) out[0] = functions.rest(x, par).time;
     if (kind == TCHAT_JUMP && index == mode.limit) functions.limit(x, par, out);
     if (kind == TCHAT_JUMP && index == mode.leave) functions.leave(x, par, out);
   }
@@ -842,19 +845,22 @@ class ProblemTable {
   }
 
   /// After an impact from which on they accumulate, the next one may be the limit of all; it is where they are near
-  /// that. After it comes contact.
+  /// that. Behind a section on the way there it is where the next one is. After the limit comes contact.
   static void allow_limit(const Problem& problem, const Chatter& mode, const std::array<int, 3>& from, const double* x,
                           const double* par, IndexVectors& next) {
     const std::array<int, 3> impact{mode.field, mode.event, mode.impact};
     const std::array<int, 3> limit{mode.field, mode.event, mode.limit};
     if (from == limit) next = {{mode.contact, mode.release, mode.leave}};
-    if (from != impact) return;
-    const int before = ChatterFunctions(problem, mode).impacts_before_limit(x, par);
-    for (std::size_t k = 0; k < next.size() && before >= 0; ++k) {
-      if (next[k] != impact) continue;
-      next.insert(next.begin() + static_cast<std::ptrdiff_t>(before == 0 ? k : k + 1), limit);
-      return;
-    }
+    std::size_t place = 0;
+    while (place < next.size() && next[place] != impact) ++place;
+    if (from == limit || place == next.size()) return;
+    const ChatterFunctions functions(problem, mode);
+    int before = -1;
+    if (from == impact)
+      before = functions.impacts_before_limit(x, par);
+    else if (from[0] == mode.field)
+      before = functions.impacts_before_limit_from(x, par);
+    if (before >= 0) next.insert(next.begin() + static_cast<std::ptrdiff_t>(before == 0 ? place : place + 1), limit);
   }
 
   static void user_value(const void* self, const double* x, const double* par, double* out) {
