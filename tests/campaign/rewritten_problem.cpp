@@ -28,6 +28,7 @@
 FORWARDED(events)
 FORWARDED(jumps)
 FORWARDED(sliding)
+FORWARDED(chatter)
 FORWARDED(integral_conditions)
 FORWARDED(user_values)
 FORWARDED(user_value_names)
@@ -49,6 +50,7 @@ template <class Original>
 struct Rewritten : With_events<Original>,
                    With_jumps<Original>,
                    With_sliding<Original>,
+                   With_chatter<Original>,
                    With_integral_conditions<Original>,
                    With_user_values<Original>,
                    With_user_value_names<Original>,
