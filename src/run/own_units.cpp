@@ -98,6 +98,31 @@ double fastest(const DefiningSystem& system, const PathPoint& point, const Eigen
   return std::max(result, point.tangent.durations.cwiseAbs().maxCoeff() / time);
 }
 
+/// Which states move along the tangent of an equilibrium, as far as the rates of states with a size tell: their terms
+/// cancel there. What is no visible part of any that do is what rounding makes of a state that stays.
+std::vector<bool> moving_at_rest(const HybridSystem& system, const DefiningSystem& defining, const PathPoint& point,
+                                 std::vector<bool> moves) {
+  constexpr double cancelled = 0.01, least_share = 1e-7;
+  const Eigen::Index n = system.dimension();
+  Eigen::VectorXd f(n);
+  Eigen::MatrixXd by_state(n, n), by_parameter(n, defining.free_count());
+  system.first(FunctionKind::field, defining.signature().front().field, point.orbit.states.data(),
+               point.orbit.par.data(), defining.free_parameters(), f.data(), by_state.data(), by_parameter.data());
+  Eigen::MatrixXd terms(n, n + defining.free_count());
+  terms << by_state * point.tangent.states.col(0).asDiagonal(),
+      by_parameter * point.tangent.globals.head(defining.free_count()).asDiagonal();
+  for (std::vector<bool> before; before != moves;) {
+    before = moves;
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const double sum = terms.row(j).cwiseAbs().sum();
+      if (!moves[static_cast<std::size_t>(j)] || !(std::abs(terms.row(j).sum()) <= cancelled * sum)) continue;
+      for (Eigen::Index i = 0; i < n; ++i)
+        if (std::abs(terms(j, i)) > least_share * sum) moves[static_cast<std::size_t>(i)] = true;
+    }
+  }
+  return moves;
+}
+
 }  // namespace
 
 OwnUnits in_own_units(const HybridSystem& system, const RunSettings& settings, const SelectedStart& start) {
@@ -120,7 +145,9 @@ std::optional<OwnUnits> in_units_along(const HybridSystem& system, const RunSett
   const double rate = fastest(defining, first, moves.cwiseQuotient(own.sizes), known);
   if (!(rate > 0.0) || std::find(known.begin(), known.end(), false) == known.end()) return std::nullopt;
   const Eigen::MatrixXd change = point.tangent.states / rate;
-  const std::vector<bool> moving = known_sizes(system, signature, point.orbit, &change).known(known);
+  const bool is_at_rest = point.orbit.shape.stored_nodes() == 1;
+  const std::vector<bool> moving = is_at_rest ? moving_at_rest(system, defining, point, known)
+                                              : known_sizes(system, signature, point.orbit, &change).known(known);
   Eigen::VectorXd sizes = own.sizes;
   bool is_other = false;
   for (Eigen::Index k = 0; k < sizes.size(); ++k) {

@@ -22,6 +22,8 @@ WAIT = 1000.0
 TIME_LIMIT = 600
 # Types of points that say where a branch ends or that every so many points is labelled; their values are not located.
 NOT_LOCATED = {"EP", "MX", "RG"}
+# `check` of the limit of its impacts takes minutes. Units of chatter have tests of their own (tests/model/chatter_test.cpp).
+NOT_REWRITTEN = {"valve"}
 
 
 class CommandFailed(Exception):
@@ -31,7 +33,8 @@ class CommandFailed(Exception):
 def problems(source):
     """Names of the problems that are written in C++ and have a pipeline."""
     names = sorted(folder.name for folder in (source / "problems").iterdir() if folder.is_dir())
-    return [name for name in names if (source / "problems" / name / (name + ".cpp")).exists()]
+    return [name for name in names
+            if (source / "problems" / name / (name + ".cpp")).exists() and name not in NOT_REWRITTEN]
 
 
 def commands(source, name):

@@ -46,6 +46,25 @@ TEST_CASE("an oscillator in metres, millimetres or nanometres has its period dou
   CHECK(contains(workspace.succeed("verify q.b -p osc").out, "5 labels agree with forward integration"));
 }
 
+TEST_CASE(
+    "the first Lyapunov coefficient does not depend on the unit of time, nor on rounding of a speed that is zero") {
+  const Workspace workspace;
+  for (const std::string T : {"1", "1.46e-3", "1.46e-7", "3e5"}) {
+    INFO("T = " << T);
+    workspace.write("valve.tch", "par q=10\nnumber T=" + T +
+                                     "\ninit lift=5, pressure=15\nlift' = T*speed\n"
+                                     "speed' = T*(pressure - (lift + 10) - 1.25*speed)\n"
+                                     "pressure' = T*20*(q - lift*sqrt(pressure))\n");
+    const double wait = 1000.0 / std::stod(T);
+    workspace.succeed(
+        std::vector<std::string>{"simulate", "valve", "--dat", "rest", "-q", "--wait", std::to_string(wait)});
+    const std::string out = workspace.succeed("run valve -c rest -d rest -o rest DS=-0.1 RL0=1 RL1=20").out;
+    INFO(out);
+    // By Kuznetsov's formula with the Jacobian's eigenvectors, in another program.
+    CHECK(out.find("l_1 = -0.000231355167") != std::string::npos);
+  }
+}
+
 TEST_CASE("a ball falls on a floor, whatever the pressure that nothing depends on, and however near the floor is") {
   const Workspace workspace;
   workspace.write("gap.tch", ball);

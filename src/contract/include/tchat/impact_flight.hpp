@@ -332,10 +332,18 @@ class ImpactFlights {
   /// Is the field along a flight the polynomial that the rule makes of it?
   bool is_resolved(const Solved& solved, const double* par) const {
     constexpr double accurate = 1e-6;  // squared, the error
+    constexpr double rounding = 1e-12;
     std::vector<State<double>> f;
     for (std::size_t j = 0; j < solved.rule.stages(); ++j) f.push_back(field(&solved.flight[j * n], par));
-    for (std::size_t k = 0; k < n; ++k)
-      if (!(solved.rule.last_share([&](std::size_t j) { return f[j][k]; }) <= accurate)) return false;
+    for (std::size_t k = 0; k < n; ++k) {
+      double size = 0.0, change = 0.0;
+      for (std::size_t j = 0; j < solved.rule.stages(); ++j) {
+        size = std::fmax(size, std::fabs(solved.flight[j * n + k]));
+        change = std::fmax(change, std::fabs(f[j][k]) * solved.flight.back());
+      }
+      const bool stays = change <= rounding * size;
+      if (!stays && !(solved.rule.last_share([&](std::size_t j) { return f[j][k]; }) <= accurate)) return false;
+    }
     return true;
   }
 
