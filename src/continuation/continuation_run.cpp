@@ -32,7 +32,7 @@ constexpr double shrunk_where_located = 1e-3;
 /// On curves of folds that matrix is so with the square of the amplitude.
 constexpr double folds_shrunk_where_located = 2e-3;
 /// So near to a point a branch is followed that leads through it: Newton's matrix is as near to a singular one.
-constexpr double shrunk_enough = level::visible;
+constexpr double shrunk_enough = 0.5 * level::visible;
 /// The deviations of orbits before and behind a point are opposite but for what a step changes.
 constexpr double opposite = -0.8;
 constexpr double shrunk = level::located;

@@ -87,8 +87,8 @@ Eigen::VectorXd same_in_halves(const Eigen::VectorXd& durations) {
 }  // namespace
 
 Approach approach(PathFollower& follower, const PathPoint& from, const Shrinking& what, double wanted) {
-  constexpr int max_steps = 30;
-  constexpr double smallest_change = 0.9, largest_change = 1e-3;
+  constexpr int max_steps = 60;
+  constexpr double smallest_change = 0.98, largest_change = 1e-3;
   Approach here{from, 0.0, what.size(from.orbit), {}};
   PathPoint trial = from;
   double change = largest_change;
@@ -165,17 +165,26 @@ std::optional<SmallestOrbit> smallest_orbit(PathFollower& follower, const Defini
 }
 
 std::string tangent_release(PathFollower& follower, const DefiningSystem& system, const PathPoint& from) {
-  constexpr double small = 0.05, largest_of_limit = 32.0;
+  constexpr double small = 0.05, largest_of_limit = 32.0, proportional = 0.1;
   const int m = system.segments();
-  int flight = -1;
+  int contact = -1;
   for (int s = 0; s < m && m > 1; ++s)
-    if (const auto share = share_of_release(system, from.orbit, s); share && *share < small) flight = (s + 1) % m;
-  if (flight < 0) return "";
+    if (const auto share = share_of_release(system, from.orbit, s); share && *share < small) contact = s;
+  if (contact < 0) return "";
+  const int flight = (contact + 1) % m;
   const auto duration = [flight](const Orbit& x) { return x.duration(flight); };
   const Shrinking what{
       duration, [flight](const PathPoint& at) { return at.tangent.durations(flight) / at.orbit.duration(flight); },
       [&](const Orbit&, const Orbit& y) { return duration(y) > 0.0; }, duration};
   const double now = duration(from.orbit);
+  // A release that is almost tangential all along has flights of other durations.
+  const Approach longer = approach(follower, from, what, 2.0 * now);
+  const std::optional<double> share = share_of_release(system, from.orbit, contact),
+                              of_longer = share_of_release(system, longer.point.orbit, contact);
+  if (!has_size(longer, 2.0 * now) || std::abs(*of_longer / *share / (longer.size / now) - 1.0) > proportional) {
+    follower.linearize_at(from);
+    return "";
+  }
   std::string text =
       "the release from contact becomes tangential: all flights shrink to nothing, and beyond it the orbit "
       "stays in contact";

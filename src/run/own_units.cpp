@@ -1,4 +1,5 @@
 #include "run/own_units.hpp"
+#include "base/levels.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -102,7 +103,7 @@ double fastest(const DefiningSystem& system, const PathPoint& point, const Eigen
 /// cancel there. What is no visible part of any that do is what rounding makes of a state that stays.
 std::vector<bool> moving_at_rest(const HybridSystem& system, const DefiningSystem& defining, const PathPoint& point,
                                  std::vector<bool> moves) {
-  constexpr double cancelled = 0.01, least_share = 1e-7;
+  constexpr double cancelled = 0.01, least_share = level::tolerance;
   const Eigen::Index n = system.dimension();
   Eigen::VectorXd f(n);
   Eigen::MatrixXd by_state(n, n), by_parameter(n, defining.free_count());
