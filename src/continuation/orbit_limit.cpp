@@ -34,7 +34,9 @@ std::vector<Limit> limits_of_parameters(PathFollower& follower, const DefiningSy
   std::vector<LimitAtZero> found(system.free_parameters().size());
   int count = 0;
   PathPoint here = from;
-  for (double size = largest; size >= smallest; size *= 0.5) {
+  const int halvings = static_cast<int>(std::lround(std::log2(largest / smallest)));
+  for (int k = 0; k <= halvings; ++k) {
+    const double size = std::ldexp(largest, -k);
     const Approach reached = approach(follower, here, what, size);
     if (!has_size(reached, size)) continue;
     here = reached.point;

@@ -29,7 +29,10 @@ class GaussRule {
   }
 
   std::size_t stages() const { return points * intervals_; }
-  double c(std::size_t i) const { return (static_cast<double>(i / points) + nodes_[i % points]) * length(); }
+  double c(std::size_t i) const {
+    const std::size_t interval = i / points;
+    return (static_cast<double>(interval) + nodes_[i % points]) * length();
+  }
   double b(std::size_t j) const { return weights_[j % points] * length(); }
   double a(std::size_t i, std::size_t j) const {
     if (j / points > i / points) return 0.0;

@@ -22,9 +22,9 @@ namespace tchat {
 
 /// How many times derivatives are nested in a kind of numbers.
 template <class T>
-constexpr int derivative_depth = 0;
+inline constexpr int derivative_depth = 0;
 template <int N, class B>
-constexpr int derivative_depth<Dual<N, B>> = 1 + derivative_depth<B>;
+inline constexpr int derivative_depth<Dual<N, B>> = 1 + derivative_depth<B>;
 
 /// The value in the first lane: what is decided by it must not matter in others, or be asked for with plain() as well.
 inline double first_lane(double a) { return a; }
