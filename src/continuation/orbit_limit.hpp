@@ -62,8 +62,8 @@ std::optional<SmallestOrbit> smallest_orbit(PathFollower& follower, const Defini
 // flights last a time in proportion to h''', and their limit a higher power of it: with it all flights are lost at
 // once. Beyond it the orbit stays in contact.
 
-/// What is said of a branch that ends at x because it comes to such an orbit; "" where it does not. `from` is x. The
-/// follower's linearisation is another one afterwards if it does.
+/// Why a branch ends at `from`, its last point, if it is about to reach such an orbit, with the values of the free
+/// parameters there; "" if it is not. If it is, the follower's linearisation is another one afterwards.
 std::string tangent_release(PathFollower& follower, const DefiningSystem& system, const PathPoint& from);
 
 /// Where the halves of doubled orbits meet, a curve of their folds meets its mirror image: all that the halves have in

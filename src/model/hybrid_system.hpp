@@ -73,7 +73,7 @@ class HybridSystem {
   }
   /// The mode that a field belongs to; null when it is none that slides.
   const tchat_sliding* sliding_mode(int field) const;
-  /// The chatter mode whose limit is this jump, as far as the problem tells; null when there is none.
+  /// The chatter mode that has this jump as its limit; null if the problem lists none.
   const tchat_chatter* chatter_with_limit(int jump) const;
   const tchat_problem& table() const { return *table_; }
 

@@ -320,7 +320,7 @@ class ChatterFunctions : ImpactFlights<Problem> {
     return {nodes.front().state, nodes.front().time};
   }
 
-  /// The state of the motion in contact at a time earlier by `time`, in as many equal parts as accuracy needs.
+  /// Follows the motion in contact back from x by `time`, in as many equal parts as accuracy needs.
   template <class T>
   State<T> back_in_contact(const State<T>& x, const T& time, const T* par) const {
     constexpr int most_parts = 64;
