@@ -113,11 +113,10 @@ class DefiningSystem {
   virtual std::optional<double> singular_distance(const Orbit& /*x*/, const OrbitVector& /*tangent*/) const {
     return std::nullopt;
   }
-  /// Sets `direction` to that of the branch that crosses the one of `tangent` at a branch point x. False where Newton's
-  /// own matrix is to give it.
-  virtual bool find_crossing_branch(const Orbit& /*x*/, const OrbitVector& /*tangent*/,
-                                    OrbitVector& /*direction*/) const {
-    return false;
+  /// The null vectors across the `tangent` of the known branch at a branch point x, the nearest to one first: several
+  /// where a symmetry makes them equal. None where Newton's own matrix is to give them.
+  virtual std::vector<OrbitVector> crossing_directions(const Orbit& /*x*/, const OrbitVector& /*tangent*/) const {
+    return {};
   }
 
  private:

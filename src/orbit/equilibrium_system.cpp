@@ -101,14 +101,29 @@ std::optional<double> EquilibriumSystem::singular_distance(const Orbit& x, const
   return sign * least_singular_value(matrix.cast<std::complex<double>>());
 }
 
-bool EquilibriumSystem::find_crossing_branch(const Orbit& x, const OrbitVector& tangent, OrbitVector& direction) const {
+std::vector<OrbitVector> EquilibriumSystem::crossing_directions(const Orbit& x, const OrbitVector& tangent) const {
+  constexpr double as_near = 100.0;  // as the first is to a null vector: those of a symmetry are equally near
   const int n = dimension();
   const Eigen::MatrixXd matrix = bordered_by_tangent(*this, x, tangent);
-  const Eigen::VectorXd v = eigenvector(matrix.transpose() * matrix, 0.0).real().normalized();
-  direction.set_zero();
-  direction.states = v.head(n).replicate(1, direction.states.cols());
-  direction.globals(0) = v(n) * parameter_size(*this, x, 0);
-  return true;
+  Eigen::MatrixXd normal = matrix.transpose() * matrix;
+  const double size = normal.norm();
+  double nearest = level::rounding * matrix.norm();
+  std::vector<OrbitVector> directions;
+  for (int k = 0; k < n; ++k) {
+    const Eigen::VectorXd v = eigenvector(normal, 0.0).real().normalized();
+    const double distance = (matrix * v).norm();
+    if (k == 0)
+      nearest = std::min(std::max(nearest, as_near * distance), level::visible * matrix.norm());
+    else if (!(distance <= nearest))
+      break;
+    OrbitVector direction = tangent;
+    direction.set_zero();
+    direction.states = v.head(n).replicate(1, direction.states.cols());
+    direction.globals(0) = v(n) * parameter_size(*this, x, 0);
+    directions.push_back(std::move(direction));
+    normal += size * v * v.transpose();
+  }
+  return directions;
 }
 
 EquilibriumFold::EquilibriumFold(const DefiningSystem& system, const OrbitShape& shape)

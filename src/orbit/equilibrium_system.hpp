@@ -41,9 +41,9 @@ class EquilibriumSystem final : public DefiningSystem {
   /// so that none is scaled to unit size: a row r is divided by |r| + (1 + |x| + |p|) |dr/ds|, s the arclength.
   /// Allocates.
   std::optional<double> singular_distance(const Orbit& x, const OrbitVector& tangent) const override;
-  /// The null vector of that matrix. Newton's own, in which a row may be zero, need not have factors at a branch point.
-  /// Allocates.
-  bool find_crossing_branch(const Orbit& x, const OrbitVector& tangent, OrbitVector& direction) const override;
+  /// The null vectors of that matrix. Newton's own, in which a row may be zero, need not have factors at a branch
+  /// point. Allocates.
+  std::vector<OrbitVector> crossing_directions(const Orbit& x, const OrbitVector& tangent) const override;
 
  private:
   mutable std::vector<double> by_state_, by_parameter_;  // n x n, n x q: scratch, as Newton's loop is not to allocate

@@ -1,5 +1,6 @@
 #include "run/branch_switch.hpp"
 #include "base/levels.hpp"
+#include "run/crossing_branches.hpp"
 #include "run/solver_settings.hpp"
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "base/messages.hpp"
 #include "files/solution_file.hpp"
@@ -112,23 +114,6 @@ Bifurcation double_without_section(const DefiningSystem& defining, const PathPoi
   return result;
 }
 
-/// Turns the direction so that DS > 0 has a meaning: the first free parameter, else duration, else state at the start
-/// of the orbit, that changes along it grows.
-void orient(const DefiningSystem& system, const Orbit& x, OrbitVector& v) {
-  constexpr double rounding = level::visible;  // of the largest one, relative to sizes
-  std::vector<double> changes;
-  for (int g = 0; g < system.free_count(); ++g) changes.push_back(v.globals(g) / parameter_size(system, x, g));
-  for (int s = 0; s < x.shape.segments; ++s)
-    changes.push_back(v.durations(s) / (time_size(system, x) + std::abs(x.duration(s))));
-  const double size = 1.0 + x.states.cwiseAbs().maxCoeff();
-  for (int a = 0; a < x.shape.dimension; ++a) changes.push_back(v.states(a, 0) / size);
-  double largest = 0.0;
-  for (const double c : changes) largest = std::max(largest, std::abs(c));
-  const auto first =
-      std::find_if(changes.begin(), changes.end(), [&](double c) { return std::abs(c) > rounding * largest; });
-  if (first != changes.end() && *first < 0.0) v.scale(-1.0);
-}
-
 /// The orbit twice over; the critical vector changes sign after one period (5.21).
 Bifurcation double_at(PathFollower& follower, const DefiningSystem& defining, const PathPoint& point) {
   const Orbit& x = point.orbit;
@@ -162,39 +147,18 @@ Bifurcation double_at(PathFollower& follower, const DefiningSystem& defining, co
   return result;
 }
 
-/// v less its part along the tangent of the known branch, and what share of its length that leaves.
-double take_off(const PathPoint& point, OrbitVector& v) {
-  const double before = dot(v, v), along = dot(point.dual, v);
-  v.states -= along * point.tangent.states;
-  v.durations -= along * point.tangent.durations;
-  v.globals -= along * point.tangent.globals;
-  return std::sqrt(dot(v, v) / before);
-}
-
 /// The null vector of the problem bordered by the tangent of the known branch: any right-hand side brings it out of the
 /// nearly singular matrix. If that was so near to a singular one that another closing row took the place of the
 /// tangent, a null vector of the problem, the solution is across that, and may be the tangent itself.
 Bifurcation branch_at(PathFollower& follower, const PathPoint& point) {
   CondensedSystem& condensed = follower.condensed();
-  OrbitVector crossing = condensed.make_vector();
-  if (condensed.system().find_crossing_branch(point.orbit, point.tangent, crossing)) {
-    orient(condensed.system(), point.orbit, crossing);
-    return {point.orbit, crossing, point.tangent};
-  }
-  OrbitResidual residual = condensed.make_residual();
-  for (std::size_t i = 0; i < residual.collocation.size(); ++i)
-    residual.collocation[i] = std::sin(1.0 + 0.83 * static_cast<double>(i));
-  std::size_t row = 0;
-  double phase = 0.4;
-  for (int s = 0; s < condensed.shape().segments; ++s) {  // the last n rows of each group
-    const int rows = condensed.system().coupling_rows(s);
-    const int filled = std::min(rows, condensed.shape().dimension);
-    row += static_cast<std::size_t>(rows - filled);
-    for (int a = 0; a < filled; ++a, phase += 1.7) residual.coupling[row++] = std::cos(phase);
+  if (auto crossing = condensed.system().crossing_directions(point.orbit, point.tangent); !crossing.empty()) {
+    orient(condensed.system(), point.orbit, crossing.front());
+    return {point.orbit, std::move(crossing.front()), point.tangent};
   }
   OrbitVector v = condensed.make_vector();
   const std::vector<double> border(static_cast<std::size_t>(condensed.border_rows()), 0.0);
-  condensed.solve(residual, border, v);
+  condensed.solve(any_right_hand_side(condensed), border, v);
   const double of_v = take_off(point, v);
   if (condensed.closing_rows_gave_way()) {
     OrbitVector null = condensed.make_vector();
@@ -288,6 +252,50 @@ std::optional<double> first_step(PathFollower& follower, const PathPoint& from, 
   return std::nullopt;
 }
 
+/// The first point of the branch that leaves along the tangent of `from`.
+struct Departure {
+  PathPoint first;
+  std::vector<NewtonIteration> history;
+  NewtonResult result;        ///< of the last step that was tried
+  bool any = false;           ///< one step converged,
+  bool has_departed = false;  ///< and its point is of another branch, near the bifurcation
+};
+
+Departure depart(PathFollower& follower, const PathPoint& from, const OrbitVector& known, const StepSettings& step,
+                 double tolerance, std::span<const double> shares) {
+  Departure result{from, {}, {}};
+  for (const double share : shares) {
+    const std::optional<double> ds = first_step(follower, from, step, share, result.first, result.result);
+    if (!ds) continue;
+    result.any = true;
+    result.history = follower.newton().history();
+    if (!is_near(follower, from, *ds, result.first.orbit)) continue;
+    if (!has_left(follower, from, known, *ds, result.first.orbit, tolerance)) continue;
+    result.has_departed = true;
+    break;
+  }
+  return result;
+}
+
+/// The tangents of the branches that leave where several null vectors cross the known one; none where one does.
+std::vector<OrbitVector> several_tangents(PathFollower& follower, const Bifurcation& at, StepSettings step,
+                                          double tolerance) {
+  PathPoint point = follower.make_point(at.orbit);
+  point.tangent = at.known;
+  follower.renormalise(point);
+  const std::vector<PathPoint> null = null_directions(follower, point);
+  if (null.size() < 2) return {};
+  step.initial = std::abs(step.initial);
+  return crossing_tangents(follower, null, [&](const PathPoint& direction) -> std::optional<Orbit> {
+    Departure departure = depart(follower, direction, at.known, step, tolerance, std::span(displacements).first(1));
+    if (!departure.has_departed) return std::nullopt;
+    return std::move(departure.first.orbit);
+  });
+}
+
+/// "1", "1 to 3"
+std::string up_to(std::size_t count) { return count == 1 ? "1" : fmt::format("1 to {}", count); }
+
 }  // namespace
 
 BranchSetup switch_branch(const HybridSystem& system, const RunSettings& settings, const SelectedStart& selected) {
@@ -324,29 +332,35 @@ BranchSetup switch_branch(const HybridSystem& system, const RunSettings& setting
 
   SelectedStart there = selected;
   there.start = {bifurcation.orbit, {}};
-  BranchSetup setup = problem_type(before).prepare(system, doubling ? doubled(before) : before, there);
-  PathPoint from = setup.follower->make_point(bifurcation.orbit);
-  from.tangent = bifurcation.direction;
-  setup.follower->renormalise(from);
+  const auto prepared = [&] {
+    return problem_type(before).prepare(system, doubling ? doubled(before) : before, there);
+  };
   const StepSettings step = continuation_settings(settings).step;
-  PathPoint first = from;
-  NewtonResult result;
-  bool any = false;
-  for (const double share : displacements) {
-    const std::optional<double> ds = first_step(*setup.follower, from, step, share, first, result);
-    if (!ds) continue;
-    any = true;
-    const std::vector<NewtonIteration> history = setup.follower->newton().history();
-    if (!is_near(*setup.follower, from, *ds, first.orbit)) continue;
-    if (!has_left(*setup.follower, from, bifurcation.known, *ds, first.orbit,
-                  newton_settings(settings).tolerance_states))
-      continue;
-    setup.start = {std::move(first), history, {}};
+  const double tolerance = newton_settings(settings).tolerance_states;
+  const std::vector<OrbitVector> several = several_tangents(*prepared().follower, bifurcation, step, tolerance);
+  BranchSetup setup = prepared();
+  const std::size_t branches = several.size();
+  const auto mode = static_cast<std::size_t>(settings.mode);
+  if (branches > 0 && mode > branches)  // of a simple branch point MODE says nothing
+    throw UserError(fmt::format("{}: MODE = {}, but {} found to leave label {}; allowed: {}", selected.source, mode,
+                                branches == 1 ? "one branch was" : fmt::format("{} branches were", branches),
+                                selected.label, up_to(branches)));
+  PathPoint from = setup.follower->make_point(bifurcation.orbit);
+  from.tangent = several.empty() ? bifurcation.direction : several[mode - 1];
+  setup.follower->renormalise(from);
+  Departure departure = depart(*setup.follower, from, bifurcation.known, step, tolerance, displacements);
+  if (departure.has_departed) {
+    setup.start = {std::move(departure.first), std::move(departure.history), {}};
+    if (branches > 1)
+      setup.start.note = fmt::format(
+          "{} branches were found to leave label {}, where several multipliers or eigenvalues come to one value; this "
+          "is number {} (MODE = {})",
+          branches, selected.label, mode, up_to(branches));
     return setup;
   }
-  if (!any)
+  if (!departure.any)
     throw ComputationError(fmt::format("no step onto the branch that bifurcates at label {} of {}: {}; try another DS",
-                                       selected.label, selected.source, describe(result.status)));
+                                       selected.label, selected.source, describe(departure.result.status)));
   throw ComputationError(fmt::format(
       "no step from label {} of {} leads away from the branch that the label lies on and to another one near it, for "
       "DS between {:.3g} and {:.3g}; compute that branch and its label again with a larger NTST or a smaller EPSS, "

@@ -162,6 +162,7 @@ void add_equilibrium_bifurcations(TestList& tests, const RunSettings& settings) 
                                                PointType::equilibrium_fold));
   if (kind == 2 || kind == 3)
     tests.push_back(std::make_unique<BranchPointTest>(stop, PointType::equilibrium_branch_point));
+  if (kind == 2) tests.push_back(std::make_unique<EigenvaluePairTest>(stop));
   add_hopf(tests, settings);
 }
 

@@ -157,8 +157,11 @@ std::vector<Constant> make_table() {
        extension_record, &R::cubic_terms, one_of({0, 1, 2}),
        "0 (no), 1 (where third derivatives are exact) or 2 (also where they are differences, which take longer)", "0",
        "of ISW = 2"},
-      {"MODE", "oscillation that a family or curve starts with at an equilibrium, 1: the slowest", extension_record,
-       &R::mode, at_least(1), "", "2", "with CONSERVED and ISW = -1, and at HH"},
+      {"MODE",
+       "which one: of the oscillations at an equilibrium, 1 is the slowest; of the branches that leave a BP or PD "
+       "where "
+       "several multipliers meet",
+       extension_record, &R::mode, at_least(1), "", "2", "with ISW = -1, and at HH"},
       {"ICPMOVE", "let ICP(1) move where no orbit is found at its first value", extension_record, &R::start_may_move,
        one_of({0, 1}), "0 (refuse such a start) or 1 (take an orbit near it, with another value)", "1", ""},
       {"CLSTOP", "end the branch where it comes back to its first point", extension_record, &R::stop_when_closed,

@@ -81,6 +81,50 @@ SpecialPoint HopfTest::classify(const TestedPoint& point, bool) const {
 
 std::string BoundaryEquilibriumTest::name() const { return fmt::format("h{} at the equilibrium", event_); }
 
+namespace {
+
+/// The real ones, the largest first.
+std::vector<double> real_eigenvalues(const TestedPoint& point) {
+  std::vector<double> values;
+  for (const auto& value : point.multipliers.values)
+    if (value.imag() == 0.0) values.push_back(value.real());
+  std::sort(values.rbegin(), values.rend());
+  return values;
+}
+
+/// How many real eigenvalues are zero where the least of them is.
+long eigenvalues_at_zero(const TestedPoint& point) {
+  constexpr double alike = 10.0;  // those of a symmetry are equal but for rounding
+  const std::vector<double> values = real_eigenvalues(point);
+  double least = INFINITY;
+  for (const double value : values) least = std::min(least, std::abs(value));
+  const double zero = std::max(alike * least, level::visible * largest_modulus(point.multipliers.values));
+  return std::count_if(values.begin(), values.end(), [&](double value) { return std::abs(value) <= zero; });
+}
+
+}  // namespace
+
+TestValue EigenvaluePairTest::evaluate(const TestedPoint& point) const {
+  if (!point.multipliers.valid) return TestValue::undefined();
+  const std::vector<double> values = real_eigenvalues(point);
+  double value = INFINITY, sign = 1.0;
+  for (std::size_t k = 1; k < values.size(); k += 2) {
+    value = std::min(value, std::abs(values[k]));
+    if (values[k] > 0.0) sign = -sign;
+  }
+  if (!std::isfinite(value)) return TestValue::undefined();
+  return TestValue::of(sign * value, orbit_accuracy * largest_modulus(point.multipliers.values));
+}
+
+bool EigenvaluePairTest::is_genuine(const TestedPoint& point) const { return eigenvalues_at_zero(point) >= 2; }
+
+SpecialPoint EigenvaluePairTest::classify(const TestedPoint& point, bool) const {
+  return {PointType::equilibrium_branch_point,
+          {},
+          stop_,
+          fmt::format("branch point: {} eigenvalues go through 0 together", eigenvalues_at_zero(point))};
+}
+
 TestValue BoundaryEquilibriumTest::evaluate(const TestedPoint& point) const {
   const HybridSystem& problem = system_.system();
   return TestValue::of(problem.event(event_, point.orbit.end(0), point.orbit.par.data()),

@@ -33,8 +33,8 @@ struct HopfPairs {
 };
 HopfPairs hopf_pairs(const std::vector<std::complex<double>>& eigenvalues);
 
-// Test functions of equilibria: Hopf bifurcation and boundary equilibrium. Fold and branch point are those of orbits
-// (bifurcation_tests.hpp).
+// Test functions of equilibria: Hopf bifurcation, two eigenvalues at once and boundary equilibrium. Fold and branch
+// point are those of orbits (bifurcation_tests.hpp).
 
 class DefiningSystem;
 
@@ -46,6 +46,23 @@ class HopfTest final : public TestFunction {
   explicit HopfTest(bool stop) : stop_(stop) {}
   std::string name() const override { return "Hopf"; }
   TestValue evaluate(const TestedPoint& point) const override;
+  bool is_genuine(const TestedPoint& point) const override;
+  SpecialPoint classify(const TestedPoint& point, bool rising) const override;
+
+ private:
+  bool stop_;
+};
+
+/// BP where two real eigenvalues go through 0 together, as a symmetry makes them do: then no determinant changes sign.
+/// With the real ones in order of size, x_1 >= x_2 >= ...: the least |x_2i|, negative when an odd number of the x_2i
+/// are positive. It vanishes with one eigenvalue, too, which is no such point.
+class EigenvaluePairTest final : public TestFunction {
+ public:
+  explicit EigenvaluePairTest(bool stop) : stop_(stop) {}
+  std::string name() const override { return "a pair of eigenvalues 0"; }
+  TestValue evaluate(const TestedPoint& point) const override;
+  Resolution resolution() const override { return Resolution::any; }
+  bool singular_at_zero() const override { return true; }
   bool is_genuine(const TestedPoint& point) const override;
   SpecialPoint classify(const TestedPoint& point, bool rising) const override;
 
