@@ -1,4 +1,4 @@
-#include "app/file_commands.hpp"
+#include "app/commands.hpp"
 
 #include <fmt/format.h>
 
@@ -225,6 +225,7 @@ void add_verify_command(CLI::App& app, std::function<int()>& chosen) {
       "  EVENT     the event that ends the segment; others that occur before it\n"
       "For a torus, rows have the worst of returns from all phases; STATE is the distance from the curve.\n"
       "The tolerance is at least 1e-9 GROWTH. Points that the run marked inadmissible pass.\n"
+      "All labels asked for: points between them must have, in the d-file, the multiplier of their curve.\n"
       "Example: tchat verify q.impacting PD1 LP1 -p mems\n"
       "Exit status: 0 all defects are below the tolerance, 1 some are not or undecided, 2 bad usage or input.");
   command->callback([&chosen, request, quiet] { chosen = [request, quiet] { return do_verify(*request, *quiet); }; });

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <map>
 #include <utility>
 
 #include "base/levels.hpp"
@@ -17,6 +16,7 @@
 #include "files/recorded_labels.hpp"
 #include "files/run_files.hpp"
 #include "files/solution_file_reader.hpp"
+#include "kinds/verify_between.hpp"
 #include "model/events.hpp"
 #include "orbit/admissibility.hpp"
 #include "orbit/collocation_rule.hpp"
@@ -227,13 +227,16 @@ std::vector<LabelledSolution> chosen(const VerifyRequest& request, const Solutio
   return result;
 }
 
-/// Labelled points of the d-file; empty when there is none.
-std::map<int, DiagnosticPoint> recorded_points(const std::string& path) {
-  std::map<int, DiagnosticPoint> result;
-  if (path.empty() || !std::filesystem::exists(path)) return result;
-  for (DiagnosticPoint& point : read_diagnostics_file(path))
-    if (point.label > 0) result[point.label] = std::move(point);
-  return result;
+/// The points of the d-file; empty when there is none.
+std::vector<DiagnosticPoint> recorded_points(const std::string& path) {
+  if (path.empty() || !std::filesystem::exists(path)) return {};
+  return read_diagnostics_file(path);
+}
+
+const DiagnosticPoint* point_of_label(const std::vector<DiagnosticPoint>& points, int label) {
+  const auto found =
+      std::find_if(points.rbegin(), points.rend(), [&](const DiagnosticPoint& point) { return point.label == label; });
+  return found != points.rend() ? &*found : nullptr;
 }
 
 const char* word_for(Defect defect) {
@@ -477,23 +480,27 @@ bool verify_solutions(const VerifyRequest& request, std::ostream& screen, std::o
   for (const std::string& warning : file.warnings) warnings << "tchat: warning: " << warning << '\n';
 
   const std::string diagnostics = sibling_path(path, 'd');
-  const std::map<int, DiagnosticPoint> recorded = recorded_points(diagnostics);
+  const std::vector<DiagnosticPoint> recorded = recorded_points(diagnostics);
   if (recorded.empty() && has_multipliers(settings.problem_type))
     warnings << fmt::format("tchat: warning: there is no {}: multipliers are compared with nothing\n",
                             diagnostics.empty() ? "d-file" : diagnostics);
   Table table(system, settings, request.tolerance, screen);
   Verdicts verdicts{{}, {}, solutions.size(), 0};
   for (const LabelledSolution& solution : solutions) {
-    const auto found = recorded.find(solution.label);
-    const Verdict verdict = table.add(solution, found != recorded.end() ? &found->second : nullptr);
+    const Verdict verdict = table.add(solution, point_of_label(recorded, solution.label));
     if (!verdict.is_right)
       verdicts.wrong.push_back(solution.label);
     else if (verdict.is_undecided)
       verdicts.undecided.push_back(solution.label);
     verdicts.inadmissible += verdict.is_inadmissible ? 1 : 0;
   }
-  screen << table.worst() << summary(path, verdicts, request.tolerance);
-  return verdicts.wrong.empty() && verdicts.undecided.empty();
+  const PointsBetween between =
+      request.labels.empty() && is_in_parameter(settings)
+          ? look_between_labels(recorded, file.solutions, settings.segments.front().index.event == no_function,
+                                request.tolerance)
+          : PointsBetween{};
+  screen << table.worst() << describe(between, request.tolerance) << summary(path, verdicts, request.tolerance);
+  return verdicts.wrong.empty() && verdicts.undecided.empty() && between.are_right();
 }
 
 }  // namespace tchat

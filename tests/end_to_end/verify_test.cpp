@@ -205,3 +205,37 @@ TEST_CASE("verify needs no optional member of a problem") {
   CHECK(contains(outcome.out, "agree"));
   CHECK(contains(outcome.out, "event 1"));
 }
+
+TEST_CASE("between the labels of a curve each point has the multiplier of the curve, or is named") {
+  // In polar coordinates r' = -r ((r - 2)^2 - (p - q^2)), one turn takes 2 pi: folds of orbits at p = q^2.
+  const Workspace workspace;
+  workspace.write("turning.tch", R"(par p=0.25, q=0.3
+init x=2.4, y=0
+r = sqrt(x^2 + y^2)
+g = (r - 2)^2 - (p - q^2)
+x' = -x*g - y
+y' = -y*g + x
+)");
+  workspace.succeed("simulate turning --free p --dat s -q");
+  workspace.succeed("run turning -c s -d s -o orbits DS=-0.02 DSMAX=.05 RL0=-.1 NMX=60 STOP=LP1");
+  CHECK(contains(workspace.succeed("verify orbits").out, "Between the labels: "));
+  workspace.succeed("run turning -c r.orbits -s orbits -o folds IRS=LP1 ISW=2 ICP=[p,q] DSMAX=.1 RL0=-1 RL1=1 NMX=20");
+  const Outcome right = workspace.tchat("verify folds");
+  INFO(right.text());
+  CHECK(right.status == 0);
+  CHECK(contains(right.out, "Between the labels: "));
+  CHECK(contains(right.out, "the multiplier of the curve at "));
+
+  // Short blocks are those of points without a label.
+  std::string diagnostics = workspace.read("d.folds");
+  const std::size_t at = diagnostics.find("\nMultiplier 1 ");  // two: one is 1 on every orbit, along the flow
+  REQUIRE(at != std::string::npos);
+  const std::size_t end = diagnostics.find('\n', at + 1);
+  diagnostics.replace(at, end - at, "\nMultiplier 1 5.0000000000E-01 0");
+  workspace.write("d.folds", diagnostics);
+  const Outcome strange = workspace.tchat("verify folds");
+  INFO(strange.text());
+  CHECK(strange.status == 1);
+  CHECK(contains(strange.out, "1 without the multiplier of the curve to 1.0e-03"));
+  CHECK(workspace.tchat("verify folds EP1").status == 0);
+}
