@@ -13,7 +13,7 @@
 #include <memory>
 
 #include "app/command_options.hpp"
-#include "app/run_commands.hpp"
+#include "app/commands.hpp"
 #include "app/template_files.hpp"
 #include "base/messages.hpp"
 #include "base/words.hpp"

@@ -18,12 +18,10 @@
 #include <new>
 #include <string_view>
 
-#include "app/file_commands.hpp"
+#include "app/commands.hpp"
 #include "app/help.hpp"
 #include "app/plot_command.hpp"
 #include "app/problem_commands.hpp"
-#include "app/run_commands.hpp"
-#include "app/simulation_commands.hpp"
 #include "app/version_text.hpp"
 #include "base/messages.hpp"
 

@@ -1,4 +1,4 @@
-#include "app/run_commands.hpp"
+#include "app/commands.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/file_commands.hpp"
+#include "app/commands.hpp"
 #include "base/messages.hpp"
 #include "files/sample_orbits.hpp"
 #include "files/solution_file.hpp"

@@ -120,6 +120,9 @@ class Campaign:
         other = self.diagram(name, "%s_%d" % (name, k), by)
         self.seconds[0] += original.seconds
         self.seconds[1] += other.seconds
+        if options.times:
+            print("%s, rewriting %d%s: %.2f s for %.2f s" %
+                  (name, k, ", idle state" * (by.idle is not None), other.seconds, original.seconds), flush=True)
         return differences(original, other), by.used
 
     def explain(self, k):
@@ -176,6 +179,7 @@ def main():
     parser.add_argument("--names", type=lambda text: text.split(","),
                         help="states, parameters, events that have another unit or factor; all without")
     parser.add_argument("--explain", action="store_true", help="find what alone makes each difference")
+    parser.add_argument("--times", action="store_true", help="print the CPU seconds of each rewriting")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("systems", nargs="*", help="names; all without")
     return Campaign(parser.parse_args()).run()
