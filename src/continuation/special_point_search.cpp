@@ -410,7 +410,11 @@ std::optional<SpecialPointSearch::Cut> SpecialPointSearch::first_in(const PathPo
   branch_point->put_zero(trial);
   const PointData there = evaluate_again(trial);
   std::vector<std::size_t> group = vanishing_at(*branch_point);
-  std::erase_if(group, [&](std::size_t test) { return !tests_[test]->is_genuine(tested(trial, there)); });
+  std::erase_if(group, [&](std::size_t test) {
+    if (tests_[test]->is_genuine(tested(trial, there))) return false;
+    searches_[test] = Search::no_special_point;
+    return true;
+  });
   return Cut{{trial, branch_point->length(), there}, group, std::nullopt};
 }
 

@@ -229,14 +229,21 @@ bool has_left(PathFollower& follower, const PathPoint& from, const OrbitVector& 
   return largest_difference(system, reached, *expected) > left_behind * displacement;
 }
 
-/// Did a step of length ds end near its length from the bifurcation? From a direction that is none Newton's method
-/// finds whatever solutions there are anywhere.
-bool is_near(const PathFollower& follower, const PathPoint& from, double ds, const Orbit& reached) {
+/// Did a step of length ds end near the bifurcation? From a direction that is none Newton's method finds whatever
+/// solutions there are anywhere. Where the end is farther than the step is long, because the parameter changes much
+/// along the branch, a shorter step ends nearer in proportion.
+bool is_near(PathFollower& follower, const PathPoint& from, double ds, const Orbit& reached) {
   const std::vector<int>& free = follower.condensed().system().free_parameters();
   Orbit displaced = from.orbit;
   advance(displaced, ds, from.tangent, free);
   const DefiningSystem& system = follower.condensed().system();
-  return largest_difference(system, reached, from.orbit) <= too_far * largest_difference(system, displaced, from.orbit);
+  const double length = largest_difference(system, reached, from.orbit);
+  if (length <= too_far * largest_difference(system, displaced, from.orbit)) return true;
+  constexpr double part = 0.25;
+  constexpr double least_share = 2.0 * part;
+  PathPoint nearer = from;
+  return follower.step(from, part * ds, nearer).converged() &&
+         largest_difference(system, nearer.orbit, from.orbit) <= least_share * length;
 }
 
 /// The longest step that converges, of at most so much; nothing when none does.
@@ -278,19 +285,30 @@ Departure depart(PathFollower& follower, const PathPoint& from, const OrbitVecto
 }
 
 /// The tangents of the branches that leave where several null vectors cross the known one; none where one does.
-std::vector<OrbitVector> several_tangents(PathFollower& follower, const Bifurcation& at, StepSettings step,
+std::vector<OrbitVector> several_tangents(PathFollower& follower, const Bifurcation& at, const StepSettings& step,
                                           double tolerance) {
   PathPoint point = follower.make_point(at.orbit);
   point.tangent = at.known;
   follower.renormalise(point);
   const std::vector<PathPoint> null = null_directions(follower, point);
   if (null.size() < 2) return {};
-  step.initial = std::abs(step.initial);
-  return crossing_tangents(follower, null, [&](const PathPoint& direction) -> std::optional<Orbit> {
-    Departure departure = depart(follower, direction, at.known, step, tolerance, std::span(displacements).first(1));
+  constexpr double shortest = 0.3;  // of the step that is asked for: far shorter ones say nothing
+  return crossing_tangents(follower, null, [&](const PathPoint& direction, double length) -> std::optional<Orbit> {
+    StepSettings of_length = step;
+    of_length.initial = length * std::abs(step.initial);
+    of_length.minimum = shortest * of_length.initial;
+    Departure departure =
+        depart(follower, direction, at.known, of_length, tolerance, std::span(displacements).first(1));
     if (!departure.has_departed) return std::nullopt;
     return std::move(departure.first.orbit);
   });
+}
+
+/// From a direction that is none it takes many iterations, with a matrix of their own each, to come to a branch.
+RunSettings patient(RunSettings settings) {
+  constexpr int iterations = 25;
+  settings.max_newton = settings.full_newton = iterations;
+  return settings;
 }
 
 /// "1", "1 to 3"
@@ -332,13 +350,13 @@ BranchSetup switch_branch(const HybridSystem& system, const RunSettings& setting
 
   SelectedStart there = selected;
   there.start = {bifurcation.orbit, {}};
-  const auto prepared = [&] {
-    return problem_type(before).prepare(system, doubling ? doubled(before) : before, there);
-  };
+  const RunSettings after = doubling ? doubled(before) : before;
+  const auto prepared = [&](const RunSettings& of) { return problem_type(of).prepare(system, of, there); };
   const StepSettings step = continuation_settings(settings).step;
   const double tolerance = newton_settings(settings).tolerance_states;
-  const std::vector<OrbitVector> several = several_tangents(*prepared().follower, bifurcation, step, tolerance);
-  BranchSetup setup = prepared();
+  const std::vector<OrbitVector> several =
+      several_tangents(*prepared(patient(after)).follower, bifurcation, step, tolerance);
+  BranchSetup setup = prepared(after);
   const std::size_t branches = several.size();
   const auto mode = static_cast<std::size_t>(settings.mode);
   if (branches > 0 && mode > branches)  // of a simple branch point MODE says nothing
@@ -348,13 +366,16 @@ BranchSetup switch_branch(const HybridSystem& system, const RunSettings& setting
   PathPoint from = setup.follower->make_point(bifurcation.orbit);
   from.tangent = several.empty() ? bifurcation.direction : several[mode - 1];
   setup.follower->renormalise(from);
-  Departure departure = depart(*setup.follower, from, bifurcation.known, step, tolerance, displacements);
+  StepSettings first = step;
+  if (branches > 0) first.minimum = std::max(step.minimum, 0.1 * std::abs(step.initial));
+  Departure departure = depart(*setup.follower, from, bifurcation.known, first, tolerance, displacements);
   if (departure.has_departed) {
     setup.start = {std::move(departure.first), std::move(departure.history), {}};
     if (branches > 1)
       setup.start.note = fmt::format(
-          "{} branches were found to leave label {}, where several multipliers or eigenvalues come to one value; this "
-          "is number {} (MODE = {})",
+          "{} branches were found to leave label {}, where several multipliers or eigenvalues come to one value (there "
+          "may "
+          "be more); this is number {} (MODE = {})",
           branches, selected.label, mode, up_to(branches));
     return setup;
   }

@@ -152,26 +152,70 @@ std::vector<PathPoint> null_directions(PathFollower& follower, const PathPoint& 
   return result;
 }
 
+namespace {
+
+using Line = Eigen::VectorXd;
+
+bool is_same_line(const Line& a, const Line& b, double cosine) { return std::abs(a.dot(b)) > cosine; }
+
+/// The direction in which a step along `line` ends, in terms of the v.
+std::optional<Line> line_reached(PathFollower& follower, const std::vector<PathPoint>& null, const Line& line,
+                                 double length, const LeaveAlong& leave) {
+  const std::optional<Orbit> reached = leave(along(follower, null, line), length);
+  if (!reached) return std::nullopt;
+  const std::vector<int>& free = follower.condensed().system().free_parameters();
+  Line result(line.size());
+  for (std::size_t i = 0; i < null.size(); ++i)
+    result(static_cast<Eigen::Index>(i)) = dot_difference(null[i].dual, *reached, null[i].orbit, free);
+  if (!(result.norm() > 0.0)) return std::nullopt;
+  return result.normalized();
+}
+
+/// A line that a step along it leads back to, from one that a step has led to.
+std::optional<Line> confirmed(PathFollower& follower, const std::vector<PathPoint>& null, Line line, double length,
+                              const LeaveAlong& leave) {
+  constexpr int rounds = 4;
+  constexpr double back = 0.9998;  // cosine: to about a degree
+  for (int round = 0; round < rounds; ++round) {
+    std::optional<Line> next = line_reached(follower, null, line, length, leave);
+    if (!next) return std::nullopt;
+    if (is_same_line(line, *next, back)) return next;
+    line = std::move(*next);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 std::vector<OrbitVector> crossing_tangents(PathFollower& follower, const std::vector<PathPoint>& null,
                                            const LeaveAlong& leave) {
-  constexpr double same_line = 0.9;  // cosine: of eight lines in a plane it is 0.92, and symmetries have fewer
+  constexpr double lengths[] = {1.0, 10.0};  // terms of third order may be too small at one, others at the other
+  constexpr std::size_t most_lines = 60;
+  constexpr double apart = 0.9;  // cosine: of eight lines in a plane it is 0.92, and symmetries have fewer
   const DefiningSystem& system = follower.condensed().system();
   const Orbit& x = null.front().orbit;
-  std::vector<Eigen::VectorXd> lines;
-  for (const Eigen::VectorXd& shares : spread_directions(null.size())) {
-    const std::optional<Orbit> reached = leave(along(follower, null, shares));
-    if (!reached) continue;
-    Eigen::VectorXd line(static_cast<Eigen::Index>(null.size()));
-    for (std::size_t i = 0; i < null.size(); ++i)
-      line(static_cast<Eigen::Index>(i)) = dot_difference(null[i].dual, *reached, x, system.free_parameters());
-    if (!(line.norm() > 0.0)) continue;
-    line.normalize();
-    if (std::none_of(lines.begin(), lines.end(),
-                     [&](const Eigen::VectorXd& other) { return std::abs(line.dot(other)) > same_line; }))
-      lines.push_back(std::move(line));
-  }
+  std::vector<Line> lines;
+  const auto is_known = [&lines](const Line& line) {
+    return std::any_of(lines.begin(), lines.end(), [&](const Line& other) { return is_same_line(line, other, apart); });
+  };
+  const auto follow = [&](const Line& from) {
+    for (const double length : lengths) {
+      const std::optional<Line> reached = line_reached(follower, null, from, length, leave);
+      if (!reached || is_known(*reached)) continue;
+      std::optional<Line> line = confirmed(follower, null, *reached, length, leave);
+      if (line && !is_known(*line)) lines.push_back(std::move(*line));
+    }
+  };
+  for (const Line& direction : spread_directions(null.size())) follow(direction);
+  // Half way between two branches the symmetry that exchanges them has a line of its own, which steps may shun.
+  for (std::size_t i = 1; i < lines.size() && lines.size() < most_lines; ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      for (const double sign : {1.0, -1.0}) {
+        const Line between = (lines[i] + sign * lines[j]).normalized();
+        if (!is_known(between)) follow(between);
+      }
   std::vector<OrbitVector> tangents;
-  for (const Eigen::VectorXd& line : lines) {
+  for (const Line& line : lines) {
     tangents.push_back(along(follower, null, line).tangent);
     orient(system, x, tangents.back());
   }

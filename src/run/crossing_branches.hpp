@@ -15,17 +15,20 @@ namespace tchat {
 // combinations are tangents [Golubitsky, Stewart, Schaeffer 1988, XIII]: with three equal oscillators in a ring, three
 // of a circle.
 //
-// They are found without these terms. From directions spread evenly over the v, a step to both sides is corrected on
-// the plane across it; a solution there that is not of the known branch is of one that crosses it, and its difference
-// from the branch point, in terms of the v, is the tangent of that up to the step's length. A branch that no direction
-// leads to is missed: what is found is said to be found, not to be all.
+// They are found without these terms. From directions spread evenly over the v, steps of two lengths to both sides are
+// corrected on the plane across it; a solution there that is not of the known branch is of one that crosses it, and its
+// difference from the branch point, in terms of the v, is the tangent of that up to the step's length. It counts if a
+// step along it leads back to it: near the point residuals are products of three small numbers, and Newton's method
+// may end beside a solution. A branch that no direction leads to is missed: what is found is said to be found, not to
+// be all.
 
 /// v_1 ... v_k, of unit length in the branch's norm and orthogonal to one another and to t. One where the branch point
 /// is simple. `point` has t; its linearisation becomes the follower's.
 std::vector<PathPoint> null_directions(PathFollower& follower, const PathPoint& point);
 
-/// A step along a direction: the solution that it leads to, nothing where there is none or it is of the known branch.
-using LeaveAlong = std::function<std::optional<Orbit>(const PathPoint& direction)>;
+/// A step of so many times DS along a direction: the solution that it leads to, nothing where there is none or it is of
+/// the known branch.
+using LeaveAlong = std::function<std::optional<Orbit>(const PathPoint& direction, double length)>;
 
 /// The tangents of the branches that those steps lead to, each once, whatever its side; in an order that depends on
 /// the branches alone. `null`: null_directions(), two or more.

@@ -404,9 +404,9 @@ void refuse_singular(PathFollower& follower, const DefiningSystem& defining, con
 /// an attempt to correct it.
 bool solves_without_correction(PathFollower& follower, const Orbit& stored, const RunSettings& settings) {
   const std::vector<NewtonIteration>& attempt = follower.newton().history();
-  if (attempt.empty()) return follower.solves(stored);
   constexpr double interpolated = level::differences;
-  return attempt.front().residual <= std::max(newton_settings(settings).tolerance_states, interpolated);
+  const double residual = attempt.empty() ? follower.relative_residual(stored) : attempt.front().residual;
+  return residual <= std::max(newton_settings(settings).tolerance_states, interpolated);
 }
 
 /// Newton's method may go far along the branch that crosses, whose orbits solve the equations as well.

@@ -12,6 +12,7 @@
 #include "orbit/condensed_system.hpp"
 #include "orbit/event_minima.hpp"
 #include "orbit/orbit.hpp"
+#include "stability/equilibrium_tests.hpp"
 #include "stability/normal_form_text.hpp"
 
 namespace tchat {
@@ -135,6 +136,14 @@ std::string BranchPointTest::objection(const TestedPoint& point) const {
 }
 
 SpecialPoint BranchPointTest::classify(const TestedPoint& point, bool) const {
+  const bool rests = point.multipliers.are_eigenvalues;
+  const long together = rests ? eigenvalues_at_zero(point) : multipliers_at(point.multipliers, 1.0);
+  if (together > 2)
+    return {type_,
+            {},
+            stop_,
+            fmt::format("branch point: {} {} are at {} together", together, rests ? "eigenvalues" : "multipliers",
+                        rests ? "0" : "+1")};
   return {type_, {}, stop_, "branch point", {}, branch_point_text(point)};
 }
 

@@ -16,6 +16,9 @@ Eigen::MatrixXd equilibrium_jacobian(const DefiningSystem& system, const Orbit& 
 /// half plane first. Not valid where f_x is not finite.
 FloquetMultipliers equilibrium_eigenvalues(const DefiningSystem& system, const Orbit& x);
 
+/// How many real eigenvalues are zero where the least of them is.
+long eigenvalues_at_zero(const TestedPoint& point);
+
 /// Two eigenvalues and how far they are from a sum of zero.
 struct EigenvaluePair {
   std::complex<double> first, second;

@@ -131,3 +131,44 @@ y' = p*y - y^3 - a*x^2*y
   CHECK(on_axes == 2);
   CHECK(on_diagonals == 2);
 }
+
+namespace {
+
+/// Equilibria from the origin, label BP1 in b.
+void follow_origin(const Workspace& workspace, const std::string& name, const std::string& start) {
+  workspace.succeed("simulate " + name + " --state " + start + " --dat s -q");
+  workspace.succeed(Words{"run", name, "-c", "s", "-d", "s", "-o", "b", "IPS=1", "RL0=-1", "RL1=1.5", "-q"});
+}
+
+}  // namespace
+
+TEST_CASE("three eigenvalues at 0 with the symmetry of a cube: thirteen branches, whatever couples the states") {
+  // x' = p x - x (x^2 + a (y^2 + z^2)) and so on: 3 axes, 6 diagonals of faces, 4 of the cube.
+  for (const char* const a : {"0.5", "2", "-0.3", "0.9"}) {
+    const Workspace workspace;
+    workspace.write("cube.tch", std::string("par p=-0.37, a=") + a + R"(
+init x=0, y=0, z=0
+x' = p*x - x*(x^2 + a*(y^2 + z^2))
+y' = p*y - y*(y^2 + a*(z^2 + x^2))
+z' = p*z - z*(z^2 + a*(x^2 + y^2))
+)");
+    follow_origin(workspace, "cube", "0,0,0");
+    const Outcome many =
+        workspace.tchat(Words{"run", "cube", "-c", "r.b", "-s", "b", "IRS=BP1", "ISW=-1", "MODE=99", "-o", "c"});
+    INFO(a << "\n" << many.text());
+    CHECK(contains(many.err, "13 branches were found"));
+  }
+}
+
+TEST_CASE("a branch that crosses at the value 0 of the parameter is met with any step") {
+  const Workspace workspace;
+  workspace.write("logistic.tch", "par r=-0.5\ninit x=0\nx' = r*x - x^2\n");  // x = r
+  follow_origin(workspace, "logistic", "0");
+  for (const char* const step : {"0.01", "-0.01", "0.1"}) {
+    const std::string ds = std::string("DS=") + step;
+    workspace.succeed(Words{"run", "logistic", "-c", "r.b", "-s", "b", "IRS=BP1", "ISW=-1", "-o", "c", "NMX=1", ds});
+    const std::vector<double> row = rows_of(workspace, "c", "EP1").front();
+    CHECK(std::abs(row.back()) == Approx(std::abs(std::stod(step))).epsilon(1e-6));
+    CHECK(workspace.points("c").front().rows.back().values[0] == Approx(row.back()).epsilon(1e-8));
+  }
+}
