@@ -437,7 +437,7 @@ struct Verdicts {
   int inadmissible = 0;
 };
 
-std::string summary(const std::string& path, const Verdicts& of, double tolerance) {
+std::string summary(const std::string& path, const Verdicts& of, double tolerance, bool are_right_between) {
   const std::string stored =
       of.inadmissible > 0 ? fmt::format(" ({} inadmissible, as the run had found)", of.inadmissible) : "";
   const std::string open =
@@ -450,8 +450,9 @@ std::string summary(const std::string& path, const Verdicts& of, double toleranc
                        tolerance, stored, list_of(of.wrong), open.empty() ? "" : "; ", open);
   const std::size_t right = of.all - of.undecided.size();
   if (right == 0) return fmt::format("{}: {}.\n", path, open);
-  return fmt::format("{}: {} label{} agree{} with forward integration to {:g}{}{}{}.\n", path, right,
-                     right == 1 ? "" : "s", right == 1 ? "s" : "", tolerance, stored, open.empty() ? "" : "; ", open);
+  return fmt::format("{}: {} label{} agree{} with forward integration to {:g}{}{}{}{}.\n", path, right,
+                     right == 1 ? "" : "s", right == 1 ? "s" : "", tolerance, stored, open.empty() ? "" : "; ", open,
+                     are_right_between ? "" : ", but points between are none of the curve");
 }
 
 }  // namespace
@@ -499,7 +500,8 @@ bool verify_solutions(const VerifyRequest& request, std::ostream& screen, std::o
           ? look_between_labels(recorded, file.solutions, settings.segments.front().index.event == no_function,
                                 request.tolerance)
           : PointsBetween{};
-  screen << table.worst() << describe(between, request.tolerance) << summary(path, verdicts, request.tolerance);
+  screen << table.worst() << describe(between, request.tolerance)
+         << summary(path, verdicts, request.tolerance, between.are_right());
   return verdicts.wrong.empty() && verdicts.undecided.empty() && between.are_right();
 }
 

@@ -237,5 +237,6 @@ y' = -y*g + x
   INFO(strange.text());
   CHECK(strange.status == 1);
   CHECK(contains(strange.out, "1 without the multiplier of the curve to 1.0e-03"));
+  CHECK(contains(strange.out, ", but points between are none of the curve."));
   CHECK(workspace.tchat("verify folds EP1").status == 0);
 }
