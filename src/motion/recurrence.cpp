@@ -32,6 +32,21 @@ void ChatteringDetector::add(const IndexVector& index, double duration, double u
   }
 }
 
+void SeriesCounter::add(const IndexVector& index, double duration) {
+  constexpr int least = 5;
+  constexpr double shrunk_to = 0.25;
+  const bool goes_on = index == index_ && duration < last_;
+  if (index == index_ && !goes_on && falling_ >= least && last_ <= shrunk_to * first_) {
+    BrokenSeries& series = broken_[index];
+    ++series.count;
+    series.longest = std::max(series.longest, falling_);
+  }
+  falling_ = goes_on ? falling_ + 1 : 0;
+  if (!goes_on) first_ = duration;
+  last_ = duration;
+  index_ = index;
+}
+
 std::optional<ChatteringDetector::Accumulation> ChatteringDetector::accumulation() const {
   if (zeros_ >= too_many_zeros) return Accumulation{};
   for (std::size_t q = 1; q <= longest_pattern; ++q)

@@ -55,6 +55,27 @@ class ChatteringDetector {
   int zeros_ = 0;                                    // last segments of no duration
 };
 
+// Chatter that is not complete: impacts come at falling intervals, and then at a longer one, before their limit.
+
+struct BrokenSeries {
+  long count = 0;
+  int longest = 0;  ///< so many falling intervals in a row
+};
+
+class SeriesCounter {
+ public:
+  /// The next segment: what ended it, and how long it lasted.
+  void add(const IndexVector& index, double duration);
+  /// Series of at least five falling intervals, to a quarter of their first or less, that a longer one ended.
+  const std::map<IndexVector, BrokenSeries>& broken() const { return broken_; }
+
+ private:
+  IndexVector index_;
+  double first_ = 0.0, last_ = 0.0;
+  int falling_ = 0;
+  std::map<IndexVector, BrokenSeries> broken_;
+};
+
 // A motion that comes to rest keeps its events, but goes through them ever more slowly.
 
 class DecayDetector {

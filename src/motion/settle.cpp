@@ -119,18 +119,21 @@ SimulationResult run_simulation(HybridSimulation& simulation, const SimulationPl
                                 const std::function<void(const SimulatedSegment&)>& kept, AttractorSearch& search) {
   SimulationResult result;
   MotionJudge judge(simulation, search, {!plan.has_length(), false});
+  SeriesCounter series;
   const Course course = settle(simulation, plan, [&](const SimulatedSegment& segment, bool is_transient) {
     if (!is_transient) {
       kept(segment);
       count_marks(segment, result);
       count_missed(simulation, segment, result);
     }
+    if (segment.ended_by == SegmentEnd::event) series.add(segment.index, segment.duration);
     result.last = segment;
     result.end = judge.look(simulation, segment, is_transient);
     return result.end != MotionEnd::open;
   });
   result.events = course.events;
   result.dropped = course.dropped;
+  result.broken_series = series.broken();
   result.accumulation = judge.accumulation();
   result.equilibrium = judge.equilibrium();
   result.turn.ignorable = search.ignorable();

@@ -126,6 +126,7 @@ struct SimulationResult {
   SimulatedSegment last;                                            ///< the last segment, whatever ended it
   std::optional<SimulatedSegment> first_violation;                  ///< with its marks
   std::map<int, MissedEvent> missed;                                ///< by event, after the transient
+  std::map<IndexVector, BrokenSeries> broken_series;                ///< by what ends each of their segments
   MotionEnd end = MotionEnd::open;
   std::optional<ChatteringDetector::Accumulation> accumulation;
   std::optional<Eigen::VectorXd> equilibrium;  ///< that the motion comes to

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "base/levels.hpp"
@@ -230,10 +231,27 @@ std::string start_text(const HybridSystem& system, const SimulationStart& start,
   return text;
 }
 
+namespace {
+
+/// As far as the problem tells.
+bool may_accumulate(const HybridSystem& system, int jump) {
+  const std::span modes(system.table().chatter, static_cast<std::size_t>(system.table().chatter_modes));
+  return std::any_of(modes.begin(), modes.end(), [&](const tchat_chatter& mode) { return mode.impact == jump; });
+}
+
+}  // namespace
+
 std::string course_text(const HybridSystem& system, const SimulationResult& result, double end_time, double contact) {
   std::string text = fmt::format("{} up to t = {:.12g}", counted(result.events, "event"), end_time);
   if (result.dropped > 0) text += fmt::format(", the first {} dropped as transient", result.dropped);
   text += "\n" + why_it_ended(system, result);
+  for (const auto& [index, series] : result.broken_series)
+    if (may_accumulate(system, index.jump))
+      text += fmt::format(
+          "Chatter is not complete: {} series of events of jump {} ({}) at falling intervals, up to {} in a row, end "
+          "in\n"
+          "a longer one, before any limit.\n",
+          series.count, index.jump, system.function_name(FunctionKind::jump, index.jump), series.longest);
   if (result.contacts > 0)
     text += fmt::format("{} (least values of an event function within {:g} of its range)\n",
                         counted(result.contacts, "near-grazing contact"), contact);

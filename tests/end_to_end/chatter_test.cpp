@@ -72,6 +72,21 @@ TEST_CASE("a branch of orbits with complete chatter ends where chatter becomes i
   CHECK(workspace.tchat("verify q.locked -p ball").status == 0);
 }
 
+TEST_CASE("a simulation says that chatter is not complete where impacts at falling intervals end in a longer one") {
+  // At Gamma = 1.4, r = 0.7 the table falls away before the ball rests on it; at 1.1, 0.5 the ball comes to rest.
+  const Workspace workspace;
+  workspace.write("ball.tch", ball);
+  const std::string bounces = workspace.succeed("simulate ball PAR(Gamma)=1.4 PAR(r)=0.7 --events 300 --rows 0").out;
+  INFO(bounces);
+  CHECK(contains(bounces, "Chatter is not complete: "));
+  CHECK(contains(bounces, "of jump 1 (impact) at falling intervals"));
+  CHECK_FALSE(contains(bounces, "infinitely many impacts"));
+  const std::string rests = workspace.succeed("simulate ball --rows 0").out;
+  INFO(rests);
+  CHECK_FALSE(contains(rests, "not complete"));
+  CHECK(contains(rests, "infinitely many impacts"));
+}
+
 TEST_CASE("the time at rest falls to zero like a power of the distance from where chatter becomes incomplete") {
   const Workspace workspace;
   workspace.write("ball.tch", ball);

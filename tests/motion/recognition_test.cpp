@@ -320,3 +320,26 @@ TEST_CASE("states at events that creep change their range, those on a circle do 
     CHECK_FALSE(slow.changing({true}));
   }
 }
+
+TEST_CASE("series of falling intervals count where a longer one ends them, not where another event does") {
+  const IndexVector impact{1, 1, 1}, limit{1, 1, 2};
+  SeriesCounter counter;
+  const auto fall = [&counter, &impact](int intervals) {
+    double duration = 1.0;
+    for (int k = 0; k <= intervals; ++k, duration *= 0.5) counter.add(impact, duration);
+  };
+  fall(7);
+  counter.add(limit, 1e-3);  // all further impacts at once
+  CHECK(counter.broken().empty());
+  fall(4);  // too few
+  fall(6);
+  fall(9);
+  counter.add(impact, 1.0);
+  REQUIRE(counter.broken().count(impact) == 1);
+  CHECK(counter.broken().at(impact).count == 2);
+  CHECK(counter.broken().at(impact).longest == 9);
+  // Hardly falling intervals are those of any motion.
+  SeriesCounter slow;
+  for (const double duration : {1.0, 0.99, 0.98, 0.97, 0.96, 0.95, 0.94, 1.0}) slow.add(impact, duration);
+  CHECK(slow.broken().empty());
+}
