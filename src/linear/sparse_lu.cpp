@@ -136,12 +136,7 @@ struct SparseLu::State {
   std::vector<int> integer_work;
   std::vector<double> real_work;
 
-  /// Rows are not scaled: matrices come in units of their unknowns, and a sum over a row, in which the column of a
-  /// parameter in other units may outweigh all others, would make pivots and fill-in a matter of that parameter's unit.
-  State() {
-    umfpack_di_defaults(control);
-    control[UMFPACK_SCALE] = UMFPACK_SCALE_NONE;
-  }
+  State() { umfpack_di_defaults(control); }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
   ~State() {
