@@ -248,9 +248,8 @@ std::string course_text(const HybridSystem& system, const SimulationResult& resu
   for (const auto& [index, series] : result.broken_series)
     if (may_accumulate(system, index.jump))
       text += fmt::format(
-          "Chatter is not complete: {} series of events of jump {} ({}) at falling intervals, up to {} in a row, end "
-          "in\n"
-          "a longer one, before any limit.\n",
+          "Chatter is not complete: {} series of events of jump {} ({}) at falling intervals, up to {} in a "
+          "row,\nended in a longer one, before any limit.\n",
           series.count, index.jump, system.function_name(FunctionKind::jump, index.jump), series.longest);
   if (result.contacts > 0)
     text += fmt::format("{} (least values of an event function within {:g} of its range)\n",
