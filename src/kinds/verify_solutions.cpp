@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <utility>
 
 #include "base/levels.hpp"
@@ -233,10 +234,12 @@ std::vector<DiagnosticPoint> recorded_points(const std::string& path) {
   return read_diagnostics_file(path);
 }
 
-const DiagnosticPoint* point_of_label(const std::vector<DiagnosticPoint>& points, int label) {
-  const auto found =
-      std::find_if(points.rbegin(), points.rend(), [&](const DiagnosticPoint& point) { return point.label == label; });
-  return found != points.rend() ? &*found : nullptr;
+/// Those with a label, by its number.
+std::map<int, const DiagnosticPoint*> labelled_points(const std::vector<DiagnosticPoint>& points) {
+  std::map<int, const DiagnosticPoint*> result;
+  for (const DiagnosticPoint& point : points)
+    if (point.label > 0) result[point.label] = &point;
+  return result;
 }
 
 const char* word_for(Defect defect) {
@@ -482,13 +485,15 @@ bool verify_solutions(const VerifyRequest& request, std::ostream& screen, std::o
 
   const std::string diagnostics = sibling_path(path, 'd');
   const std::vector<DiagnosticPoint> recorded = recorded_points(diagnostics);
+  const std::map<int, const DiagnosticPoint*> labelled = labelled_points(recorded);
   if (recorded.empty() && has_multipliers(settings.problem_type))
     warnings << fmt::format("tchat: warning: there is no {}: multipliers are compared with nothing\n",
                             diagnostics.empty() ? "d-file" : diagnostics);
   Table table(system, settings, request.tolerance, screen);
   Verdicts verdicts{{}, {}, solutions.size(), 0};
   for (const LabelledSolution& solution : solutions) {
-    const Verdict verdict = table.add(solution, point_of_label(recorded, solution.label));
+    const auto found = labelled.find(solution.label);
+    const Verdict verdict = table.add(solution, found != labelled.end() ? found->second : nullptr);
     if (!verdict.is_right)
       verdicts.wrong.push_back(solution.label);
     else if (verdict.is_undecided)

@@ -374,8 +374,7 @@ BranchSetup switch_branch(const HybridSystem& system, const RunSettings& setting
     if (branches > 1)
       setup.start.note = fmt::format(
           "{} branches were found to leave label {}, where several multipliers or eigenvalues come to one value (there "
-          "may "
-          "be more); this is number {} (MODE = {})",
+          "may be more); this is number {} (MODE = {})",
           branches, selected.label, mode, up_to(branches));
     return setup;
   }

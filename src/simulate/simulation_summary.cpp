@@ -233,7 +233,7 @@ std::string start_text(const HybridSystem& system, const SimulationStart& start,
 
 namespace {
 
-/// As far as the problem tells.
+/// Does the problem list a chatter mode whose impacts have this jump?
 bool may_accumulate(const HybridSystem& system, int jump) {
   const std::span modes(system.table().chatter, static_cast<std::size_t>(system.table().chatter_modes));
   return std::any_of(modes.begin(), modes.end(), [&](const tchat_chatter& mode) { return mode.impact == jump; });

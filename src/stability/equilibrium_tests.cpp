@@ -97,7 +97,7 @@ std::vector<double> real_eigenvalues(const TestedPoint& point) {
 }  // namespace
 
 long eigenvalues_at_zero(const TestedPoint& point) {
-  constexpr double alike = 10.0;  // those of a symmetry are equal but for rounding
+  constexpr double alike = 10.0;  // a symmetry makes them equal, up to rounding
   const std::vector<double> values = real_eigenvalues(point);
   double least = INFINITY;
   for (const double value : values) least = std::min(least, std::abs(value));

@@ -110,35 +110,6 @@ after any: round -> reset
   CHECK(out.find("you might") == std::string::npos);
 }
 
-TEST_CASE("Two multipliers go through +1 together, as the symmetry of a ring of three makes them do: BP and a branch") {
-  // Stuart-Landau oscillators z' = (1 + 3 i) z - (1 + i c) |z|^2 z + K (1 + i b) (sum of the others - 2 z). In phase,
-  // each of the two other modes has l^2 + 2 (1 + k) l + k^2 (1 + b^2) + 2 k (1 + b c) = 0 with k = 3 K: zero at
-  // c = -(k (1 + b^2) + 2) / (2 b) = -5/4.
-  const Workspace workspace;
-  std::string ring = "par c=-1, b=2, K=0.2\ninit x1=1, y1=0, x2=1, y2=0, x3=1, y3=0\n";
-  for (const auto* const k : {"123", "231", "312"}) {
-    const std::string a(1, k[0]), b(1, k[1]), c(1, k[2]);
-    ring += "r" + a + " = x" + a + "^2 + y" + a + "^2\n";
-    ring +=
-        "p" + a + " = x" + b + " + x" + c + " - 2*x" + a + "\nq" + a + " = y" + b + " + y" + c + " - 2*y" + a + "\n";
-    ring += "x" + a + "' = x" + a + " - 3*y" + a + " - r" + a + "*(x" + a + " - c*y" + a + ") + K*(p" + a + " - b*q" +
-            a + ")\n";
-    ring += "y" + a + "' = y" + a + " + 3*x" + a + " - r" + a + "*(y" + a + " + c*x" + a + ") + K*(q" + a + " + b*p" +
-            a + ")\n";
-  }
-  workspace.write("ring.tch", ring);
-  workspace.succeed("simulate ring --dat s -q");
-  const std::string out = workspace.succeed("run ring -c s -d s -o b ICP=[c] DS=-.02 DSMAX=.1 RL0=-1.5 NMX=100").out;
-  INFO(out);
-  CHECK(out.find("BP label 2 at c = -1.25: branch point: 2 multipliers go through +1 together") != std::string::npos);
-  CHECK(out.find("may be missing") == std::string::npos);
-  // The in-phase orbit has the period 2 pi / (3 - c) whatever its stability. Others have another one.
-  const std::string branch = workspace.succeed("run ring -c r.b -s b IRS=BP1 ISW=-1 -o c NMX=5").out;
-  INFO(branch);
-  CHECK(first_period(workspace.read("p.c")) != Approx(2.0 * std::numbers::pi / (3.0 + 1.25)).epsilon(1e-4));
-  CHECK(workspace.succeed("verify q.c").out.find("agree") != std::string::npos);
-}
-
 TEST_CASE("Limit of chattering on a vibrating table: no more digits than it has") {
   // x'' = -1 on a table 1.1 sin(t), r = 1/2. By iteration of the flights in 40 digits the limit is 5.311288054231.
   const Workspace workspace;
