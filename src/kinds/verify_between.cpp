@@ -112,7 +112,7 @@ PointsBetween look_between_labels(const std::vector<DiagnosticPoint>& points,
 }
 
 std::string describe(const PointsBetween& between, double tolerance) {
-  if (between.points == 0) return {};
+  if (between.on_curves == 0 && between.inadmissible == 0 && between.lost.empty()) return {};
   std::string text = fmt::format("Between the labels: {} point{}", between.points, between.points == 1 ? "" : "s");
   if (between.inadmissible > 0) text += fmt::format(", {} inadmissible", between.inadmissible);
   if (!between.strange.empty())

@@ -31,7 +31,7 @@ struct PointsBetween {
 PointsBetween look_between_labels(const std::vector<DiagnosticPoint>& points,
                                   const std::vector<LabelledSolution>& solutions, bool has_trivial, double tolerance);
 
-/// Lines for the screen; "" where there are no such points.
+/// Lines for the screen; "" where there is nothing to say of these points.
 std::string describe(const PointsBetween& between, double tolerance);
 
 }  // namespace tchat
