@@ -14,7 +14,7 @@
 
 #include "app/command_options.hpp"
 #include "app/commands.hpp"
-#include "app/template_files.hpp"
+#include "app/compiled_texts.hpp"
 #include "base/messages.hpp"
 #include "base/words.hpp"
 #include "files/auto_format.hpp"

@@ -19,10 +19,10 @@
 #include <string_view>
 
 #include "app/commands.hpp"
+#include "app/compiled_texts.hpp"
 #include "app/help.hpp"
 #include "app/plot_command.hpp"
 #include "app/problem_commands.hpp"
-#include "app/version_text.hpp"
 #include "base/messages.hpp"
 
 namespace tchat {

@@ -1,4 +1,4 @@
-#include "app/version_text.hpp"
+#include "app/compiled_texts.hpp"
 
 #include "commit.hpp"  // written at every build
 

@@ -1,6 +1,7 @@
-/// Words, lines and numbers of texts, and suggestions for words that are not known.
+/// Words, lines and numbers of texts, suggestions for words that are not known, and calls of tchat.
 #pragma once
 
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
@@ -42,5 +43,22 @@ std::optional<double> parse_fortran_real(std::string_view text);
 
 /// The whole text as an integer; nothing for one whose negative is no int: signs are taken off everywhere.
 std::optional<int> parse_integer(std::string_view text);
+
+// Calls of tchat as data, and as a user would type them.
+
+/// The words of one call behind the program's name: {"run", "ball", "-o", "b"}.
+using Command = std::vector<std::string>;
+/// Calls, each of which needs the success of those before it.
+using Commands = std::vector<Command>;
+
+/// One list after the other.
+Command words_of(std::initializer_list<Command> parts);
+
+/// Quoted for the shell, with a blank before each.
+std::string shell_words(const Command& words);
+/// "tchat run ball -o b"
+std::string shell_line(const Command& command);
+/// Joined by " && "; "" for none.
+std::string shell_line(const Commands& commands);
 
 }  // namespace tchat

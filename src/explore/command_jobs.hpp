@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/command.hpp"
+#include "base/words.hpp"
 
 namespace tchat {
 

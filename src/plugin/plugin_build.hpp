@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/command.hpp"
+#include "base/words.hpp"
 #include "plugin/compiler.hpp"
 
 namespace tchat {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "base/command.hpp"
+#include "base/words.hpp"
 #include "model/hybrid_system.hpp"
 #include "orbit/orbit.hpp"
 #include "run/orbit_start.hpp"
