@@ -1,4 +1,4 @@
-/// LU of sparse matrices by frontal matrices, and permutations.
+/// LU of sparse matrices by frontal matrices.
 #pragma once
 
 #include <optional>
@@ -6,20 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "linear/large_lu.hpp"
 #include "linear/memory.hpp"
 
 namespace tchat {
-
-/// Sign of a permutation of 0, 1, ..., by its cycles.
-inline int permutation_parity(std::vector<int> order) {
-  int sign = 1;
-  for (std::size_t k = 0; k < order.size(); ++k)
-    while (order[k] != static_cast<int>(k)) {
-      std::swap(order[k], order[static_cast<std::size_t>(order[k])]);
-      sign = -sign;
-    }
-  return sign;
-}
 
 // LU of a sparse matrix whose rows come in groups along a chain or a ring, by frontal matrices [I. S. Duff, J. K.
 // Reid, SIAM J. Sci. Stat. Comput. 5 (1984) 633].
@@ -31,13 +21,22 @@ inline int permutation_parity(std::vector<int> order) {
 // border rows among it; these may have entries in all columns, are eliminated on the way and never chosen as pivots
 // before. Where a group touches its neighbours only, work is linear in the number of groups.
 //
-// Rows are divided by their sums of magnitudes first. All arrays are allocated when the object is made.
+// Where groups are coupled by rows that are long (those of a torus: the end of one return against the starts of all),
+// each of these is written with one column more,
+//
+//     sum over near columns a_rj x_j + y_r = b_r,     y_r = sum over far columns a_rj x_j,
+//
+// and y_r, like the far columns, is kept to the last front, where the sum takes its place. So a group is reduced to its
+// far columns and its y for itself, and the last front is factored as a large dense matrix (large_lu.hpp).
+//
+// Rows are divided by their sums of magnitudes first. All arrays are allocated when the object is made, but for those
+// of the large matrix.
 
 class FrontalLu {
  public:
   /// The pattern is given as to SparseLu; `groups` has for each row of the matrix the number of its group, 0, 1, ...
   /// along the chain, or `border_row`. Nothing where columns are shared by groups so far apart that the blocks would be
-  /// much larger than the matrix.
+  /// much larger than the matrix, nor where it is not long rows that share them.
   static std::optional<FrontalLu> make(int size, std::span<const int> rows, std::span<const int> columns,
                                        std::span<const int> groups);
   static constexpr int border_row = -1;
@@ -54,9 +53,17 @@ class FrontalLu {
   std::pair<int, double> determinant() const;
 
  private:
-  /// Entry number `value` of those given to factorize() belongs at `place` of the block.
+  class Plan;
+  /// Entry number `value` of those given to factorize() belongs at `place` of the block; `one` of no entry but y_r's.
   struct Entry {
     int value, place;
+  };
+  static constexpr int one = -1;
+  /// The far entries of a row, at their columns of the last front; y_r is column size + its number.
+  struct LongRow {
+    int row;
+    std::ptrdiff_t first;  // of its values
+    std::vector<Entry> far;
   };
   /// What the rows that a front has left are in the front that takes them: its columns there.
   struct Child {
@@ -66,7 +73,7 @@ class FrontalLu {
   struct Front {
     std::vector<Child> children;  // whose rows come first, then
     std::vector<int> own_rows;
-    std::vector<int> columns;  // those eliminated here first
+    std::vector<int> columns;  // those eliminated here first; from `size` on those of long rows
     std::vector<Entry> entries;
     int rows = 0, border = 0, pivots = 0, width = 0;
     std::ptrdiff_t block = 0, right = 0, swaps = 0;  // where its own begin
@@ -74,9 +81,14 @@ class FrontalLu {
   };
 
   FrontalLu() = default;
+  static std::optional<FrontalLu> make_with(Plan& plan, int size, std::span<const int> rows);
   int parity() const;
   int find_parity_without_exchanges() const;
-  class Plan;
+  /// Those that are eliminated in place.
+  std::span<const Front> by_swaps() const { return std::span(fronts_).first(fronts_.size() - (last_ ? 1 : 0)); }
+  void add_far(double factor, const LongRow& row, double* target) const;
+  void find_far_sums(const double* x);
+  void solve_last(double* x);
   void fetch_front(std::size_t number) const;
   void put_children(const Front& front, double* block) const;
   bool eliminate_pivots(const Front& front, double* block);
@@ -85,10 +97,12 @@ class FrontalLu {
 
   int size_ = 0;
   std::vector<Front> fronts_;  // each after its children
+  std::vector<LongRow> long_rows_;
+  std::optional<LargeLu> last_;  // of the last front, where rows are long
   std::vector<int> entry_rows_;
   std::vector<double> scales_;                                     // of rows
   std::vector<double, AlignedAllocator<double>> blocks_, rights_;  // of fronts
-  std::vector<double> local_, known_, column_sizes_;
+  std::vector<double> local_, known_, column_sizes_, far_values_;  // known_: y follow
   std::vector<int> swaps_;
   int parity_without_exchanges_ = 1;
 };

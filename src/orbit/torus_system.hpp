@@ -76,8 +76,9 @@ TorusWinding torus_winding(const HybridSystem& system, const Signature& one_retu
 //
 // Segments of the orbit are those of the N returns one after the other: segment i m + s. Each is condensed for itself,
 // in time linear in N; R couples the starts of the N returns, a block of n N rows that is dense in the starts,
-// component by component, of which elimination makes a dense matrix of n N columns: n^3 N^3 operations of blocks of
-// LAPACK's kind within the sparse factorisation, 8 n^2 N^2 bytes.
+// component by component. A return is reduced to its start and, through the columns of these rows, to nothing else
+// (linear/frontal_lu.hpp); what is left is a dense matrix of n N columns (linear/large_lu.hpp): 2/3 n^3 N^3 operations
+// in blocks, where no state stands alone, 8 n^2 N^2 bytes.
 //
 // A state that is an angle counted modulo 2 pi may wind (TorusWinding): u(phi + 1) = u(phi) + w, and a return may
 // end whole turns further, P(u(phi)) = u(phi + rho) + c. What is interpolated then is u(phi) - w phi, and the target

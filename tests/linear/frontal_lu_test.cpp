@@ -1,5 +1,6 @@
 // Frontal matrices against dense linear algebra, on rings like those that the segments of an orbit are.
 #include <catch2/catch.hpp>
+#include <numeric>
 #include <random>
 
 #include "linear/frontal_lu.hpp"
@@ -12,43 +13,86 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// `groups` groups with n unknowns of their own and n that the group before has entries in as well, and border rows
-/// that have entries everywhere as columns `border` that all rows have entries in.
-struct Ring {
+struct GroupedMatrix {
   int size;
   std::vector<int> rows, columns, groups;
   std::vector<double> values;
 
-  Ring(int group_count, int n, int border, unsigned seed, bool closed = true) : size(2 * n * group_count + border) {
-    std::mt19937 generator(seed);
+  GroupedMatrix(int a_size, unsigned seed) : size(a_size), generator(seed) {}
+
+  /// `count` rows of very different size.
+  void add(int group, int count, const std::vector<int>& own_columns) {
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> decades(-3.0, 3.0);
-    int row = 0;
-    const auto add = [&](int group, int count, const std::vector<int>& own_columns) {
-      for (int i = 0; i < count; ++i, ++row) {
-        const double scale = std::pow(10.0, decades(generator));  // rows of very different size
-        for (const int column : own_columns)
-          rows.push_back(row), columns.push_back(column), values.push_back(scale * normal(generator));
-        groups.push_back(group);
-      }
-    };
-    for (int g = 0; g < group_count; ++g) {
-      std::vector<int> own;
-      for (int k = 0; k < 2 * n; ++k) own.push_back(2 * n * g + k);
-      if (closed || g + 1 < group_count)
-        for (int k = 0; k < n; ++k) own.push_back(2 * n * ((g + 1) % group_count) + k);
-      for (int k = 0; k < border; ++k) own.push_back(2 * n * group_count + k);
-      add(g, 2 * n, own);
+    for (int i = 0; i < count; ++i) {
+      const double scale = std::pow(10.0, decades(generator));
+      for (const int column : own_columns)
+        rows.push_back(static_cast<int>(groups.size())), columns.push_back(column),
+            values.push_back(scale * normal(generator));
+      groups.push_back(group);
     }
-    std::vector<int> all;
-    for (int k = 0; k < size; ++k) all.push_back(k);
-    add(FrontalLu::border_row, border, all);
   }
 
   MatrixXd dense() const {
     MatrixXd a = MatrixXd::Zero(size, size);
     for (std::size_t k = 0; k < rows.size(); ++k) a(rows[k], columns[k]) += values[k];
     return a;
+  }
+
+ private:
+  std::mt19937 generator;
+};
+
+std::vector<int> numbers(int first, int count) {
+  std::vector<int> result(static_cast<std::size_t>(count));
+  std::iota(result.begin(), result.end(), first);
+  return result;
+}
+
+std::vector<int> together(std::vector<int> some, const std::vector<int>& others) {
+  some.insert(some.end(), others.begin(), others.end());
+  return some;
+}
+
+/// `groups` groups with n unknowns of their own and n that the group before has entries in as well, and border rows
+/// that have entries everywhere as columns `border` that all rows have entries in.
+struct Ring : GroupedMatrix {
+  Ring(int group_count, int n, int border, unsigned seed, bool closed = true)
+      : GroupedMatrix(2 * n * group_count + border, seed) {
+    const std::vector<int> common = numbers(2 * n * group_count, border);
+    for (int g = 0; g < group_count; ++g) {
+      std::vector<int> own = numbers(2 * n * g, 2 * n);
+      if (closed || g + 1 < group_count) own = together(own, numbers(2 * n * ((g + 1) % group_count), n));
+      add(g, 2 * n, together(own, common));
+    }
+    add(FrontalLu::border_row, border, numbers(0, size));
+  }
+};
+
+/// Returns of `per_return` groups, of which each has n unknowns for its start and n + 1 for its end and its duration, n
+/// + 1 rows for these, and n rows that couple its end to the next start or, component by component, the last end of a
+/// return to the starts of all returns. The last unknown of n is one on which no other depends.
+struct Torus : GroupedMatrix {
+  Torus(int returns, int per_return, int n, int border, unsigned seed)
+      : GroupedMatrix(returns * per_return * (2 * n + 1) + border, seed) {
+    const int width = 2 * n + 1;
+    const std::vector<int> common = numbers(size - border, border);
+    const auto without_last = [&](int first) { return numbers(first, n - 1); };
+    for (int g = 0; g < returns * per_return; ++g) {
+      const int start = g * width, end = start + n, duration = end + n;
+      const std::vector<int> others = together({duration}, common);
+      add(g, n, together(together(without_last(start), without_last(end)), others));
+      add(g, 1, {start + n - 1, end + n - 1});
+      for (int a = 0; a < n; ++a) {
+        std::vector<int> coupled = a + 1 < n ? without_last(end) : std::vector<int>{end + n - 1};
+        if (g % per_return + 1 < per_return)
+          coupled.push_back(start + width + a);
+        else
+          for (int l = 0; l < returns; ++l) coupled.push_back(l * per_return * width + a);
+        add(g, 1, a + 1 < n ? together(coupled, common) : coupled);
+      }
+    }
+    add(FrontalLu::border_row, border, numbers(0, size));
   }
 };
 
@@ -61,6 +105,27 @@ VectorXd random_vector(int n, unsigned seed) {
   std::mt19937 generator(seed);
   std::normal_distribution<double> normal;
   return VectorXd::NullaryExpr(n, [&] { return normal(generator); });
+}
+
+/// Solutions and the determinant against dense linear algebra; the sign of the determinant.
+int sign_of_judged(const GroupedMatrix& a, FrontalLu& lu, unsigned seed) {
+  const MatrixXd dense = a.dense();
+  // Rounding; pivots grow little. The rows' sizes are divided out, and so are they here.
+  const double rounding = 1e-13 * test::condition_number(with_unit_rows(dense));
+  const VectorXd x = random_vector(a.size, seed);
+  VectorXd b = dense * x, found(a.size);
+  lu.solve(b.data(), found.data());
+  CHECK((found - x).norm() < rounding * x.norm());
+  b = dense.transpose() * x;
+  lu.solve_transposed(b.data(), found.data());
+  const VectorXd sizes = dense.cwiseAbs().rowwise().sum();
+  CHECK(sizes.cwiseProduct(found - x).norm() < rounding * sizes.cwiseProduct(x).norm());
+
+  const auto [sign, log_size] = lu.determinant();
+  const auto [expected, expected_log_size] = test::sign_and_log2_of_determinant(dense);
+  CHECK(sign == expected);
+  CHECK(log_size == Approx(expected_log_size).margin(1e-8));
+  return sign;
 }
 
 }  // namespace
@@ -79,26 +144,32 @@ TEST_CASE("frontal matrices: solutions with the matrix and its transpose, determ
       std::optional<FrontalLu> lu = FrontalLu::make(a.size, a.rows, a.columns, a.groups);
       REQUIRE(lu);
       REQUIRE(lu->factorize(a.values));
-      const MatrixXd dense = a.dense();
-      // Rounding; pivots grow little. The rows' sizes are divided out, and so are they here.
-      const double rounding = 1e-13 * test::condition_number(with_unit_rows(dense));
-      const VectorXd x = random_vector(a.size, 100 + seed);
-      VectorXd b = dense * x, found(a.size);
-      lu->solve(b.data(), found.data());
-      CHECK((found - x).norm() < rounding * x.norm());
-      b = dense.transpose() * x;
-      lu->solve_transposed(b.data(), found.data());
-      const VectorXd sizes = dense.cwiseAbs().rowwise().sum();
-      CHECK(sizes.cwiseProduct(found - x).norm() < rounding * sizes.cwiseProduct(x).norm());
-
-      const auto [sign, log_size] = lu->determinant();
-      const double expected = test::determinant(dense);
-      CHECK(sign == (expected > 0.0 ? 1 : -1));
-      CHECK(log_size == Approx(std::log2(std::abs(expected))).margin(1e-8));
+      const int sign = sign_of_judged(a, *lu, 100 + seed);
       negative += sign < 0 ? 1 : 0;
     }
     CHECK(negative > 0);
     CHECK(negative < 12);
+  }
+}
+
+TEST_CASE("frontal matrices: long rows that couple all returns of a torus") {
+  struct Sizes {
+    int returns, per_return, n, border;
+  };
+  for (const Sizes& s : {Sizes{41, 1, 3, 1}, Sizes{25, 2, 2, 3}, Sizes{31, 3, 2, 2}, Sizes{60, 1, 4, 2}}) {
+    CAPTURE(s.returns, s.per_return, s.n, s.border);
+    int negative = 0;
+    std::optional<FrontalLu> lu;
+    for (unsigned seed = 0; seed < 8; ++seed) {
+      const Torus a(s.returns, s.per_return, s.n, s.border, seed);
+      REQUIRE(static_cast<int>(a.groups.size()) == a.size);
+      if (!lu) lu = FrontalLu::make(a.size, a.rows, a.columns, a.groups);
+      REQUIRE(lu);
+      REQUIRE(lu->factorize(a.values));
+      negative += sign_of_judged(a, *lu, 100 + seed) < 0 ? 1 : 0;
+    }
+    CHECK(negative > 0);
+    CHECK(negative < 8);
   }
 }
 

@@ -38,6 +38,17 @@ Eigen::MatrixXd random_orthogonal(std::mt19937& generator, int n) {
   return random_matrix(generator, n, n).householderQr().householderQ();
 }
 
+std::pair<int, double> sign_and_log2_of_determinant(const Eigen::MatrixXd& matrix) {
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(matrix);
+  auto sign = static_cast<int>(lu.permutationP().determinant() * lu.permutationQ().determinant());
+  double log2_size = 0.0;
+  for (const double pivot : lu.matrixLU().diagonal()) {
+    if (pivot < 0.0) sign = -sign;
+    log2_size += std::log2(std::abs(pivot));
+  }
+  return {sign, log2_size};
+}
+
 double determinant(const Eigen::MatrixXd& matrix) { return matrix.determinant(); }
 
 Eigen::VectorXd solution(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) { return a.partialPivLu().solve(b); }

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <complex>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace tchat::test {
@@ -15,6 +16,8 @@ Eigen::MatrixXd random_matrix(std::mt19937& generator, int rows, int columns);
 Eigen::MatrixXd random_orthogonal(std::mt19937& generator, int n);
 
 double determinant(const Eigen::MatrixXd& matrix);
+/// Its sign and the logarithm to base 2 of its magnitude, by Eigen's LU decomposition with complete pivoting.
+std::pair<int, double> sign_and_log2_of_determinant(const Eigen::MatrixXd& matrix);
 
 /// x with A x = b, by Eigen's LU decomposition with partial pivoting.
 Eigen::VectorXd solution(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
