@@ -118,6 +118,7 @@ struct BranchSummary {
   bool undefined_function = false;  ///< no convergence, for a function of the problem has no value there
   bool stopped_at_grazing = false;  ///< by GRSTOP
   std::string remark;               ///< what becomes of the orbit at the end; "" if nothing is to be said
+  std::string no_progress;          ///< why the branch has not gone anywhere; "" if it has
   int points = 0;
   int inadmissible_points = 0;
   int unstable_points = 0;

@@ -162,7 +162,31 @@ BranchSummary ContinuationRun::run(PathPoint start) {
   summary_.vanishing = search_.vanishing(here_, accepted_data_);
   if (const std::optional<PeriodGrowth> growth = trend_.period_growth())
     summary_.remark = analysis_->tendency(here_.orbit, *growth, settings_.principal_name);
+  if (summary_.reason == EndReason::max_points && summary_.remark.empty()) summary_.no_progress = no_progress();
   return summary_;
+}
+
+/// The step to here_.
+void ContinuationRun::add_to_way() {
+  constexpr double nearly = 0.99;
+  constexpr double of_size = 2.0;  // that changes are divided by: the value and the size
+  ++way_.steps;
+  way_.longest += std::abs(next_.ds) >= nearly * settings_.step.maximum;
+  way_.length += of_size * follower_.relative_length(here_) * std::abs(next_.ds);
+}
+
+/// Where most steps had the length DSMAX and nothing has changed by as much as 5 % of its size.
+std::string ContinuationRun::no_progress() const {
+  constexpr double no_way = 0.05, change_of_a_step = 0.02;
+  constexpr int fewest_steps = 8;
+  if (way_.steps < fewest_steps || 2 * way_.longest <= way_.steps || way_.length >= no_way) return "";
+  const double longer = settings_.step.maximum * change_of_a_step * way_.steps / way_.length;
+  const std::string example = std::isfinite(longer) ? fmt::format(", for example DSMAX={:.0e}", longer) : "";
+  return fmt::format(
+      "in {} steps, {} of them of length DSMAX = {:g}, nothing has changed by more than {:.0e} of its size: DS and "
+      "DSMAX count in the unit of {}, which is {:.6g} here: larger ones go further{}",
+      way_.steps, way_.longest, settings_.step.maximum, way_.length, settings_.principal_name, parameter_at(here_),
+      example);
 }
 
 void ContinuationRun::add_to_trend() {
@@ -470,6 +494,7 @@ void ContinuationRun::accept(const SpecialPoint& special) {
     lost_before_ = summary_.lost.size();
   }
   mark_accepted();
+  if (number_ > settings_.first_number) add_to_way();
   accepted_data_ = next_.data;
   if (special.type != PointType::ordinary) accepted_data_.details = search_.details(here_, accepted_data_);
   add_to_trend();

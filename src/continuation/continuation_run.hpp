@@ -113,6 +113,8 @@ class ContinuationRun {
   void write_last_again(PointType type);
   bool turns_visibly(double parameter) const;
   void add_to_trend();
+  void add_to_way();
+  std::string no_progress() const;
 
   PathFollower& follower_;
   const DefiningSystem& system_;
@@ -146,6 +148,10 @@ class ContinuationRun {
   std::vector<NamedTestValue> test_values_;  // of the point that is handed over
   std::size_t lost_before_ = 0;              // reports at the last accepted point
   int number_ = 1;                           // of here_
+  struct {
+    int steps = 0, longest = 0;  // of length DSMAX
+    double length = 0.0;         // the sum of the largest changes of all steps, each relative to a size
+  } way_;
   bool ended_ = false;
   BranchSummary summary_;
 };

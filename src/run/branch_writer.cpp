@@ -425,7 +425,8 @@ std::string summary_text(const BranchSummary& summary, const std::vector<BranchW
     return label.type == "MX" && label.description == summary.detail;
   });
   text += folded(fmt::format("  stopped: {}", reason_text(summary, told)));
-  if (!summary.remark.empty()) text += folded("  " + summary.remark);
+  for (const std::string& more : {summary.remark, summary.no_progress})
+    if (!more.empty()) text += folded("  " + more);
   return text + vanishing_functions(summary.vanishing) + advice(summary) + lost_points(summary, parameter) +
          accuracy(summary) + inadmissible(summary);
 }
