@@ -72,8 +72,8 @@ constexpr double vanishing_period = level::same;
 constexpr double vanishing_range = level::visible;
 constexpr double no_range = level::tolerance;
 
-/// The angular frequency with which an orbit that has shrunk to a point goes around it, if the flow is smooth there and
-/// the period is that of the linear oscillation.
+/// The angular frequency with which an orbit of this period that has shrunk to the point x goes around it, if the flow
+/// is smooth there and the period is that of the linear oscillation.
 std::optional<double> hopf_frequency(const DefiningSystem& system, const Orbit& x) {
   constexpr double accuracy = 1e-2;
   if (!is_smooth(system)) return std::nullopt;
@@ -95,7 +95,7 @@ bool RingAnalysis::has_fixed_phase() const {
 }
 
 SpecialPoint RingAnalysis::shrunk(const Orbit& x, bool are_folds) const {
-  const std::optional<double> omega = hopf_frequency(system_, x);
+  std::optional<double> omega = hopf_frequency(system_, x);
   const bool is_family = system_.conserved_quantities() > 0;  // at an equilibrium that need not change its stability
   const char* what = is_family ? "linear oscillation" : are_folds ? "generalised Hopf point" : "Hopf bifurcation";
   const PointType type = !omega || is_family ? PointType::end
@@ -109,8 +109,12 @@ SpecialPoint RingAnalysis::shrunk(const Orbit& x, bool are_folds) const {
   if (omega) {  // means differ from the equilibrium by the square of the amplitude
     const int field = system_.signature().front().field;
     const Eigen::VectorXd sizes = state_sizes(system_.system(), system_.signature(), x);
-    if (const auto found = find_equilibrium(system_.system(), field, point, x.par.data(), {}, sizes))
+    if (const auto found = find_equilibrium(system_.system(), field, point, x.par.data(), {}, sizes)) {
       point = found->state;
+      Orbit equilibrium = x;
+      equilibrium.states.colwise() = point;
+      omega = hopf_frequency(system_, equilibrium).value_or(*omega);
+    }
   }
   return {type,
           {},
@@ -118,7 +122,7 @@ SpecialPoint RingAnalysis::shrunk(const Orbit& x, bool are_folds) const {
           fmt::format("the orbit has shrunk to a point, {}: an equilibrium, where the {} ends{}",
                       state_text(system_.system(), x, point.data()),
                       are_folds ? "curve of folds" : "branch of periodic orbits",
-                      omega ? fmt::format(" ({}, omega = {:.6g})", what, *omega) : "")};
+                      omega ? fmt::format(" ({}, omega = {:.10g})", what, *omega) : "")};
 }
 
 std::string RingAnalysis::passed_infinity(const PathPoint& from, const PathPoint& to, double ds) const {
