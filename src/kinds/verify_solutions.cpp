@@ -163,14 +163,16 @@ double curve_size(const TorusSystem& torus, const Orbit& x, const VectorXd& scal
   return (ranges + torus.winding().curve.cwiseAbs()).cwiseQuotient(scale).cwiseMin(1.0).maxCoeff();
 }
 
-/// Moduli of the multipliers of the integrated returns; empty where there are none.
+/// Moduli of the multipliers of the integrated returns; empty where there are none. `scale`: the sizes of states in
+/// which the links are.
 std::vector<std::complex<double>> integrated_moduli(const TorusSystem& torus, const Orbit& x,
-                                                    const std::vector<SegmentLink>& links) {
+                                                    const std::vector<SegmentLink>& links, const VectorXd& scale) {
   const int states = least_dimension(torus.system(), torus.signature());
   if (links.empty() || states < 2) return {};
   const MatrixXd matrices = integrated_returns(torus, links, x.shape.dimension);
   if (!matrices.allFinite()) return {};
-  const VectorXd moduli = moduli_along_rotation(matrices, periodic_section_curve(torus, x), torus.winding().curve,
+  const MatrixXd curve = scale.cwiseInverse().asDiagonal() * periodic_section_curve(torus, x);
+  const VectorXd moduli = moduli_along_rotation(matrices, curve, torus.winding().curve.cwiseQuotient(scale),
                                                 TorusSystem::rotation(x), states);
   std::vector<std::complex<double>> result(moduli.begin(), moduli.end());
   result.emplace_back(0.0);
@@ -193,8 +195,7 @@ OrbitCheck check_torus(const HybridSystem& system, const RunSettings& one_return
     const std::vector<SegmentCheck> checks = check_segments(
         system, settings, returns, scale, following_states(torus, x, returns, offset), tolerance, angles);
     if (offset == 0.0)
-      result.multipliers =
-          integrated_moduli(torus, x, links_of(system, settings, x, checks, VectorXd::Ones(x.shape.dimension)));
+      result.multipliers = integrated_moduli(torus, x, links_of(system, settings, x, checks, scale), scale);
     for (std::size_t s = 0; s < checks.size(); ++s) {
       const std::size_t place = s % static_cast<std::size_t>(m);
       if (result.segments.size() <= place)
@@ -211,6 +212,7 @@ OrbitCheck check_torus(const HybridSystem& system, const RunSettings& one_return
   }
   result.goes_forward = x.period() > 0.0 && std::isfinite(x.period());
   if (!(result.period > 0.0)) result.period = 1.0;
+  result.computes_multipliers = result.multipliers.empty() && !stored.empty();  // but has not, which is to be told
   if (result.multipliers.size() == stored.size() && !stored.empty()) {
     result.multiplier_difference = largest_difference(stored, result.multipliers);
     result.multiplier_error = *result.multiplier_difference * curve_size(torus, x, scale);
@@ -321,9 +323,12 @@ class Table {
     const std::string integral =
         integral_.where == "none" ? ""
                                   : fmt::format(", integral conditions {:.1e} ({})", integral_.value, integral_.where);
-    return folded(fmt::format("Largest defects{}: states {:.1e} ({}), times {:.1e} ({}), multipliers {:.1e} ({}){}{}.",
+    const std::string multipliers =
+        multipliers_.where == "none" ? "no multipliers compared"
+                                     : fmt::format("multipliers {:.1e} ({})", multipliers_.value, multipliers_.where);
+    return folded(fmt::format("Largest defects{}: states {:.1e} ({}), times {:.1e} ({}), {}{}{}.",
                               family_.checked_trajectories(), state_.value, state_.where, time_.value, time_.where,
-                              multipliers_.value, multipliers_.where, critical, integral));
+                              multipliers, critical, integral));
   }
 
  private:

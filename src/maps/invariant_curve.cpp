@@ -145,7 +145,7 @@ Return repetition(const MatrixXd& points, const std::vector<Index>& angles, cons
       for (Index k = begin; k < end; ++k) {
         VectorXd d = points.col(k + q) - points.col(k);
         for (const Index i : angles) d(i) = full_turn * nearest_phase(d(i) / full_turn);
-        distance = std::max(distance, d.cwiseAbs().cwiseQuotient(size).maxCoeff());
+        distance = std::max(distance, length_in_sizes(d, size));
       }
       return distance;
     };

@@ -114,7 +114,7 @@ VectorXd sizes_of_terms(const HybridSystem& system, FunctionKind kind, int index
   return value.cwiseAbs() + by_state.cwiseAbs() * states.cwiseAbs();
 }
 
-/// Do the functions of a segment not see that a state is a turn further?
+/// Do the functions of a segment not see that a state is further?
 bool is_blind(const HybridSystem& system, const IndexVector& index, const VectorXd& x, const VectorXd& further,
               const VectorXd& par) {
   const auto differs = [&](FunctionKind kind, int which, const VectorXd& shift) {
@@ -129,16 +129,26 @@ bool is_blind(const HybridSystem& system, const IndexVector& index, const Vector
          !differs(FunctionKind::jump, index.jump, further - x);
 }
 
-bool is_angle(const HybridSystem& system, const Signature& one_return, const MatrixXd& samples, Index state,
-              const VectorXd& par) {
+/// The same of all samples, for a state that is further by so much.
+bool is_blind(const HybridSystem& system, const Signature& one_return, const MatrixXd& samples, Index state,
+              double change, const VectorXd& par) {
   for (Index k = 0; k < samples.cols(); ++k) {
     const VectorXd x = samples.col(k);
     VectorXd further = x;
-    further(state) += whole_angle / system.unit_of(static_cast<int>(state) + 1);
+    further(state) += change;
     for (const IndexVector& index : one_return)
       if (!is_blind(system, index, x, further, par)) return false;
   }
   return true;
+}
+
+/// Of a state so large that a turn is rounding of it no part of a turn is seen either, but a change by its own size is.
+bool is_angle(const HybridSystem& system, const Signature& one_return, const MatrixXd& samples, Index state,
+              const VectorXd& par) {
+  const double radian = 1.0 / system.unit_of(static_cast<int>(state) + 1);
+  const double size = samples.row(state).cwiseAbs().maxCoeff();
+  const auto does_not_matter = [&](double change) { return is_blind(system, one_return, samples, state, change, par); };
+  return does_not_matter(whole_angle * radian) && (!does_not_matter(radian) || does_not_matter(size));
 }
 
 double last_harmonics_of(const VectorXd& values, double w) {

@@ -36,8 +36,8 @@ Eigen::VectorXd harmonic_sizes(const Eigen::MatrixXd& values, const Eigen::Vecto
 // States of a torus that are angles, counted modulo 2 pi.
 //
 // A state is an angle for a return where 2 pi more of it changes nothing: neither the fields nor the event functions,
-// and of the jumps nothing but the same 2 pi. Along a torus it may go round: then the curve u(phi) of a section does
-// not close, and a return may end whole turns further,
+// and of the jumps nothing but the same 2 pi; unless that is rounding of a state so large. Along a torus it may go
+// round: then the curve u(phi) of a section does not close, and a return may end whole turns further,
 //
 //     u(phi + 1) = u(phi) + w,     P(u(phi)) = u(phi + rho) + c,     w and c whole multiples of 2 pi.
 
@@ -78,7 +78,7 @@ TorusWinding torus_winding(const HybridSystem& system, const Signature& one_retu
 // in time linear in N; R couples the starts of the N returns, a block of n N rows that is dense in the starts,
 // component by component. A return is reduced to its start and, through the columns of these rows, to nothing else
 // (linear/frontal_lu.hpp); what is left is a dense matrix of n N columns (linear/large_lu.hpp): 2/3 n^3 N^3 operations
-// in blocks, where no state stands alone, 8 n^2 N^2 bytes.
+// in blocks, where no state stands alone, 16 n^2 N^2 bytes.
 //
 // A state that is an angle counted modulo 2 pi may wind (TorusWinding): u(phi + 1) = u(phi) + w, and a return may
 // end whole turns further, P(u(phi)) = u(phi + rho) + c. What is interpolated then is u(phi) - w phi, and the target

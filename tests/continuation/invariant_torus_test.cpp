@@ -167,6 +167,11 @@ TEST_CASE("torus: a state that is an angle winds along the curve, and a return e
   CHECK(winding.returns.isApprox(Eigen::Vector3d(0.0, 0.0, 2.0 * pi)));
   // x and y are no angles, whatever they do.
   CHECK(angle_states(hybrid, {{1, 1, 1}}, start.states.leftCols(5), start.par) == std::vector<Eigen::Index>{2});
+  // Nor are they where 2 pi of them is rounding; the angle is one after many turns, too.
+  Eigen::MatrixXd large = start.states.leftCols(5);
+  large.topRows(2) *= 1e11;
+  large.row(2).array() += 2000.0 * pi;
+  CHECK(angle_states(hybrid, {{1, 1, 1}}, large, start.par) == std::vector<Eigen::Index>{2});
 
   const TorusSystem system(hybrid, {{1, 1, 1}}, 31, {omega, ParameterLayout().rotation()}, winding);
   PathFollower follower(system, start.shape, WeightedNorm::unit(start.shape), {12, 12, 1e-12, 1e-12}, omega);

@@ -133,3 +133,44 @@ after any:           left until turns -> identity, lstop -> bounce
                  "(2,2,2), (1,1,2), (3,5,2), (2,4,1)"));
   CHECK(contains(outcome.out, "h_x f = -0.00011325"));
 }
+
+TEST_CASE("a torus is one in seconds and pascals, and beside a state that is zero; verify compares its multipliers") {
+  // Two coupled van der Pol oscillators, one in units of Y, in time T. The rotation number on the section x' = 0 by
+  // direct integration (scipy, relative tolerance 1e-11): 0.3466135079.
+  struct Units {
+    const char* Y;
+    const char* T;
+    const char* first_line;
+  };
+  for (const auto& [Y, T, first_line] :
+       {Units{"1", "1", ""}, Units{"1.5e5", "1e-6", ""}, Units{"1e10", "1", ""}, Units{"1", "1", "zero' = -zero\n"}}) {
+    INFO("Y = " << Y << ", T = " << T << ", " << first_line);
+    const Workspace workspace;
+    workspace.write("pair.tch", "par e=0.5, k=0.2, d=0.9\nnumber Y=" + std::string(Y) + ", T=" + T +
+                                    "\ninit x=2, y=" + Y + "\n" + first_line +
+                                    "x' = u/T\nu' = (e*(1 - x^2)*u - x + k*(y/Y - x))/T\ny' = w/T\n"
+                                    "w' = (e*(1 - (y/Y)^2)*w - (1 + d)*y + k*(x*Y - y))/T\n"
+                                    "event section = u\nafter any: section -> identity\n");
+    const std::string found = workspace.succeed("simulate pair --signature 1,1,0 --torus t").out;
+    INFO(found);
+    CHECK(contains(found, "Rotation number rho = 0.3466135"));
+    workspace.succeed("run pair -c t -s t -o b ICP=[k,rho] NMX=2 DS=0.02 -q");
+    const std::string verified = workspace.succeed("verify q.b -p pair").out;
+    INFO(verified);
+    CHECK(contains(verified, "multipliers "));
+    CHECK_FALSE(contains(verified, "no multipliers"));
+  }
+}
+
+TEST_CASE("a run whose steps are too short to go anywhere says so, and how long they would have to be") {
+  const Workspace workspace;
+  workspace.write("rest.tch", "par force=4e12\ninit x=1\nx' = force/4e12 - x\n");
+  workspace.succeed("simulate rest --dat s -q");
+  const std::string short_steps = workspace.succeed("run rest -c s -d s -o a NMX=30 DS=0.1").out;
+  INFO(short_steps);
+  CHECK(contains(short_steps, "29 of them of length DSMAX = 0.1, nothing has changed by more than"));
+  CHECK(contains(short_steps, "for example DSMAX=8e+10"));
+  const std::string longer = workspace.succeed("run rest -c s -d s -o b NMX=30 DS=8e10 DSMAX=8e10").out;
+  CHECK(workspace.points("b").front().rows.back().values[0] > 5e12);
+  CHECK_FALSE(contains(longer, "nothing has changed"));
+}
