@@ -47,13 +47,13 @@ class EventAlongSegment {
 
   /// The minimum near sigma of interval j, by the flow from the interval's left mesh point (by the polynomial where
   /// there is no flow, or it has gone elsewhere, as near a saddle it does from rounding alone); the small rest of h_x f
-  /// there is removed by one Newton step on the time. `sizes`: of states.
-  EventMinimum polished(int j, double sigma, const Vector& sizes) const {
-    constexpr double elsewhere = 0.1;  // of these
+  /// there is removed by one Newton step on the time. `is_near`: of a difference of states.
+  template <class Nearness>
+  EventMinimum polished(int j, double sigma, const Nearness& is_near) const {
     const double time = sigma * length(j) * x_.duration(s_);
     Vector u = nodes(j) * basis_at(sigma).values;
     const std::optional<Vector> flown = flow(x_.node(s_, j * x_.shape.collocation), time);
-    if (flown && length_in_sizes(*flown - u, sizes) < elsewhere) u = *flown;
+    if (flown && is_near(*flown - u)) u = *flown;
     const int n = x_.shape.dimension;
     Vector f(n);
     Eigen::MatrixXd fx(n, n);
@@ -296,6 +296,13 @@ std::vector<EventMinimum> polished_minima(const HybridSystem& system, const Sign
   const EventAlongSegment along(system, v.field, rule, x, s, course.event);
   std::vector<EventMinimum> minima;
   Vector sizes;
+  // The largest values do where no state is rounding of zero, and take no time.
+  const auto is_near = [&](const Vector& change) {
+    constexpr double elsewhere = 0.1;  // of the sizes
+    if (length_in_sizes(change, x.states.cwiseAbs().rowwise().maxCoeff()) < elsewhere) return true;
+    if (sizes.size() == 0) sizes = state_sizes(system, signature, x);
+    return length_in_sizes(change, sizes) < elsewhere;
+  };
   for (std::size_t i = 0; i < course.dips.size(); ++i) {
     const EventDip& dip = course.dips[i];
     if (dip.value >= below) continue;
@@ -303,8 +310,7 @@ std::vector<EventMinimum> polished_minima(const HybridSystem& system, const Sign
         is_pinned_start(system, signature, x, s, course.event, scale_of(system, x, course)))
       continue;
     if (i + 1 == course.dips.size() && course.last_hangs_on_end && v.event == course.event) continue;
-    if (sizes.size() == 0) sizes = state_sizes(system, signature, x);
-    minima.push_back(along.polished(dip.interval, dip.sigma, sizes));
+    minima.push_back(along.polished(dip.interval, dip.sigma, is_near));
   }
   return minima;
 }

@@ -134,7 +134,8 @@ after any:           left until turns -> identity, lstop -> bounce
   CHECK(contains(outcome.out, "h_x f = -0.00011325"));
 }
 
-TEST_CASE("a torus is one in seconds and pascals, and beside a state that is zero; verify compares its multipliers") {
+TEST_CASE(
+    "a torus is one in seconds and pascals, and beside a state that is zero, and verify compares its multipliers") {
   // Two coupled van der Pol oscillators, one in units of Y, in time T. The rotation number on the section x' = 0 by
   // direct integration (scipy, relative tolerance 1e-11): 0.3466135079.
   struct Units {
