@@ -143,16 +143,16 @@ TEST_CASE(
     const char* T;
     const char* first_line;
   };
-  for (const auto& [Y, T, first_line] :
-       {Units{"1", "1", ""}, Units{"1.5e5", "1e-6", ""}, Units{"1e10", "1", ""}, Units{"1", "1", "zero' = -zero\n"}}) {
+  for (const auto& [Y, T, first_line] : {Units{"1.5e5", "1e-6", ""}, Units{"1", "1", "zero' = -zero\n"}}) {
     INFO("Y = " << Y << ", T = " << T << ", " << first_line);
     const Workspace workspace;
     workspace.write("pair.tch", "par e=0.5, k=0.2, d=0.9\nnumber Y=" + std::string(Y) + ", T=" + T +
                                     "\ninit x=2, y=" + Y + "\n" + first_line +
                                     "x' = u/T\nu' = (e*(1 - x^2)*u - x + k*(y/Y - x))/T\ny' = w/T\n"
                                     "w' = (e*(1 - (y/Y)^2)*w - (1 + d)*y + k*(x*Y - y))/T\n"
-                                    "event section = u\nafter any: section -> identity\n");
-    const std::string found = workspace.succeed("simulate pair --signature 1,1,0 --torus t").out;
+                                    "event section = u\njump same: x -> x\nafter any: section -> same\n");
+    const std::string found =
+        workspace.succeed("simulate pair --signature 1,1,1 --torus t --transient-events 100 --events 400").out;
     INFO(found);
     CHECK(contains(found, "Rotation number rho = 0.3466135"));
     workspace.succeed("run pair -c t -s t -o b ICP=[k,rho] NMX=2 DS=0.02 -q");
