@@ -212,7 +212,7 @@ OrbitCheck check_torus(const HybridSystem& system, const RunSettings& one_return
   }
   result.goes_forward = x.period() > 0.0 && std::isfinite(x.period());
   if (!(result.period > 0.0)) result.period = 1.0;
-  result.computes_multipliers = result.multipliers.empty() && !stored.empty();  // but has not, which is to be told
+  result.computes_multipliers = true;
   if (result.multipliers.size() == stored.size() && !stored.empty()) {
     result.multiplier_difference = largest_difference(stored, result.multipliers);
     result.multiplier_error = *result.multiplier_difference * curve_size(torus, x, scale);

@@ -106,7 +106,7 @@ class FrontalLu::Plan {
     last_[at(column)] = std::max(last_[at(column)], group);
   }
 
-  /// Those of twice as many entries as most rows have, of which the far ones are at columns that many groups share.
+  /// Long rows have more than twice the usual number of entries; those in columns that many groups share are far.
   void choose_long_rows() {
     constexpr int most_neighbours = 4, long_from = 2;
     std::vector<int> touching(at(size_), 0), last_seen(at(size_), -1);

@@ -29,14 +29,13 @@ namespace tchat {
 // and y_r, like the far columns, is kept to the last front, where the sum takes its place. So a group is reduced to its
 // far columns and its y for itself, and the last front is factored as a large dense matrix (large_lu.hpp).
 //
-// Rows are divided by their sums of magnitudes first. All arrays are allocated when the object is made, but for those
-// of the large matrix.
+// Rows are divided by their sums of magnitudes first. After construction only the large matrix allocates.
 
 class FrontalLu {
  public:
   /// The pattern is given as to SparseLu; `groups` has for each row of the matrix the number of its group, 0, 1, ...
   /// along the chain, or `border_row`. Nothing where columns are shared by groups so far apart that the blocks would be
-  /// much larger than the matrix, nor where it is not long rows that share them.
+  /// much larger than the matrix, unless long rows alone share them.
   static std::optional<FrontalLu> make(int size, std::span<const int> rows, std::span<const int> columns,
                                        std::span<const int> groups);
   static constexpr int border_row = -1;
