@@ -35,9 +35,40 @@ constexpr double shortest_share = level::negligible;  // of a piece, that a step
 // years.
 constexpr int most_steps = 100'000;
 
+constexpr Eigen::Index few_rows = 6;
+
+/// out += factor a b, a of N x N.
+template <int N>
+void add_product(double factor, const MatrixXd& a, const MatrixXd& b, MatrixXd& out) {
+  for (Eigen::Index j = 0; j < b.cols(); ++j)
+    for (int k = 0; k < N; ++k) {
+      const double share = factor * b(k, j);
+      for (int i = 0; i < N; ++i) out(i, j) += share * a(i, k);
+    }
+}
+
+/// The same of any size. Of few rows Eigen's product takes longer than the arithmetic.
+void add_product(double factor, const MatrixXd& a, const MatrixXd& b, MatrixXd& out) {
+  switch (a.rows()) {
+    case 2:
+      return add_product<2>(factor, a, b, out);
+    case 3:
+      return add_product<3>(factor, a, b, out);
+    case 4:
+      return add_product<4>(factor, a, b, out);
+    case 5:
+      return add_product<5>(factor, a, b, out);
+    case few_rows:
+      return add_product<few_rows>(factor, a, b, out);
+    default:
+      out.noalias() += factor * a * b;
+  }
+}
+
 void commutator(const MatrixXd& a, const MatrixXd& b, MatrixXd& out) {
-  out.noalias() = a * b;
-  out.noalias() -= b * a;
+  out.setZero();
+  add_product(1.0, a, b, out);
+  add_product(-1.0, b, a, out);
 }
 
 void commutator(const SparseMatrix& a, const SparseMatrix& b, SparseMatrix& out) {
@@ -177,7 +208,7 @@ int TangentFlow::terms(double enough) const {
 
 /// V + Omega (V + Omega/2 (V + ...))
 void TangentFlow::apply_exponential(MatrixXd& vectors) {
-  const int count = terms(is_rough_ ? 1e-3 * most_difference : level::rounding);
+  const int count = terms(is_rough_ ? 0.01 * most_difference : level::rounding);
   if (has_few_entries_) {  // entries of one row of V together
     rows_ = vectors;
     row_term_ = rows_;
@@ -190,8 +221,9 @@ void TangentFlow::apply_exponential(MatrixXd& vectors) {
   }
   term_ = vectors;
   for (int k = count; k > 0; --k) {
-    product_.noalias() = dense_.omega * term_;
-    term_ = vectors + product_ / static_cast<double>(k);
+    product_ = vectors;
+    add_product(1.0 / static_cast<double>(k), dense_.omega, term_, product_);
+    term_.swap(product_);
   }
   vectors.swap(term_);
 }
