@@ -171,10 +171,11 @@ class Diagram:
 
 def range_word(over, option="over", counts=(0, 1)):
     """NAME=FROM:TO or NAME=FROM:TO:COUNT of {"gamma": (0, 0.05)} or {"gamma": (0, 0.05, 200)}."""
-    if len(over) != 1 or len(next(iter(over.values()))) - 2 not in counts:
+    pairs = list(over.items()) if hasattr(over, "items") else []
+    if len(pairs) != 1 or not hasattr(pairs[0][1], "__len__") or len(pairs[0][1]) - 2 not in counts:
         raise Error("%s=%r: a diagram is explored over one parameter between two values, as %s={\"gamma\": (0, 0.05)}" %
                     (option, over, option))
-    (name, (begin, end, *count)), = over.items()
+    (name, (begin, end, *count)), = pairs
     return "%s=%r:%r" % (name, float(begin), float(end)) + "".join(":%d" % one for one in count)
 
 

@@ -9,7 +9,7 @@ import weakref
 
 from .branch import run_words
 from .diagram import explore
-from .program import Error, execute
+from .program import Error, GrowingSweep, ProgressBar, execute
 from .simulation import Simulation
 from .start import Start
 from .sweep import over_words, read_sweep
@@ -100,8 +100,8 @@ class Problem:
             finally:
                 os.unlink(claim)
 
-    def _execute(self, command, words, accepted=(0,)):
-        return execute([command] + words, self.folder, self.program, accepted=accepted)
+    def _execute(self, command, words, accepted=(0,), poll=lambda: True):
+        return execute([command] + words, self.folder, self.program, poll, accepted)
 
     def check(self):
         """`tchat check`: derivatives against finite differences. A Report, whose `passed` is the verdict."""
@@ -155,7 +155,7 @@ class Problem:
         with self._named("branch", name) as name:
             words = [self.name, "-p", self.source, "-o", name] + words
             branch = run_words(words, name, self.folder, self.program, progress, problem=self)
-        if bounds:
+        if bounds or "RL0" in values or "RL1" in values:
             branch.warn_of_ends()
         return branch
 
@@ -176,7 +176,12 @@ class Problem:
                                     transient_events=transient_events, tolerance=tolerance))
         with self._named("sweep", name) as name:
             words = [self.name, "-p", self.source, "-o", name, "-j", jobs] + over_words(over) + options + list(words)
-            screen = self._execute("sweep", words + value_words(values, self.program))
+            bar, growing = ProgressBar(name), GrowingSweep(self.path(name) + ".sweep")
+            try:
+                screen = self._execute("sweep", words + value_words(values, self.program),
+                                       poll=lambda: growing.show(bar))
+            finally:
+                bar.close()
             result = read_sweep(self.path(name))
         result.screen = screen
         return result

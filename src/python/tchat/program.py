@@ -135,8 +135,8 @@ class Progress:
         return "point %d: %.6g%s" % (self.number, self.value, ", label %d" % self.label if self.label else "")
 
 
-class GrowingPoints:
-    """The points that a run adds to its p-file, as they come."""
+class GrowingFile:
+    """The whole lines that a command adds to a file, as they come."""
 
     def __init__(self, path, append=False):
         self._path, self._old, self._offset, self._rest = path, None, 0, ""
@@ -150,7 +150,7 @@ class GrowingPoints:
         else:
             self._old = state.st_ino
 
-    def new_points(self):
+    def new_lines(self):
         try:
             with open(self._path, encoding="latin-1", newline="") as file:
                 if os.fstat(file.fileno()).st_ino == self._old:
@@ -162,9 +162,31 @@ class GrowingPoints:
             return
         lines = (self._rest + text).split("\n")
         self._rest = lines.pop()
-        for words in map(str.split, lines):
+        yield from map(str.split, lines)
+
+
+class GrowingPoints(GrowingFile):
+    """The points that a run adds to its p-file, as they come."""
+
+    def new_points(self):
+        for words in self.new_lines():
             if len(words) > 4 and words[0] != "0":
                 yield Progress(words)
+
+
+class GrowingSweep(GrowingFile):
+    """How many values a sweep has in its journal."""
+
+    def __init__(self, path):
+        super().__init__(path + ".journal", append=True)
+        self._done = 0
+
+    def show(self, bar):
+        for words in self.new_lines():
+            self._done += words[:1] != ["#"] and words[1:2] != ["0"]  # start 0: attractors known beforehand
+        if self._done:
+            bar("%d values" % self._done)
+        return True
 
 
 class ProgressBar:
@@ -177,7 +199,7 @@ class ProgressBar:
     def __call__(self, point):
         if not self._watched or time.monotonic() - self._begin < _QUIET_SECONDS:
             return
-        text = "%s: %r" % (self._name, point)
+        text = "%s: %s" % (self._name, point)
         sys.stderr.write("\r" + text.ljust(self._width))
         sys.stderr.flush()
         self._width = len(text)

@@ -90,8 +90,10 @@ def read_sweep(path):
 
 def over_words(over):
     """--over NAME=FROM:TO:COUNT of {"gamma": (0, 0.05, 200)}."""
+    if not hasattr(over, "items"):
+        raise Error("over=%r: give what is swept as a dictionary, over={\"gamma\": (0, 0.05, 200)}" % (over,))
     words = []
-    for name, values in dict(over).items():
+    for name, values in over.items():
         try:
             values = [float(one) for one in values]
         except (TypeError, ValueError):

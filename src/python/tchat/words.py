@@ -3,7 +3,7 @@
 import functools
 import re
 
-from .program import constant_word, execute
+from .program import Error, constant_word, execute
 
 
 @functools.lru_cache(maxsize=None)
@@ -55,6 +55,9 @@ def state_word(state):
     """A state as --state takes it, from a dictionary or a list."""
     if state is None or isinstance(state, str):
         return state
-    if isinstance(state, dict):
-        return ",".join("%s=%r" % (name, float(value)) for name, value in state.items())
-    return ",".join(repr(float(value)) for value in state)
+    try:
+        if isinstance(state, dict):
+            return ",".join("%s=%r" % (name, float(value)) for name, value in state.items())
+        return ",".join(repr(float(value)) for value in state)
+    except (TypeError, ValueError):
+        raise Error("state=%r: give numbers, as a list of all states or a dictionary by name" % (state,)) from None
