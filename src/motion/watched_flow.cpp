@@ -156,11 +156,51 @@ std::optional<double> EventWatch::fall(Watched& watched, double end, double h, d
   return std::nullopt;
 }
 
+/// Steps of an integration follow the states, and an event function may change faster: h in the middle is compared with
+/// the cubic that has h and h_x f at both ends.
+bool EventWatch::is_resolved(std::size_t i, double time, const DenseOutput& state) const {
+  constexpr double alike = 0.01;
+  const Watched& watched = events_[i];
+  const double length = time - time_, h = now_[i], rate = now_[events_.size() + i];
+  const double expected = 0.5 * (watched.h + h) + 0.125 * length * (watched.rate - rate);
+  const double* const middle = state(time_ + 0.5 * length);
+  const double found = value(watched.event, middle);
+  const double largest = std::max({std::abs(watched.h), std::abs(h), std::abs(found)});
+  if (!std::isfinite(found) || std::abs(found - expected) <= alike * largest) return true;
+  return largest <= watched.tolerance * scale(watched.event, middle);
+}
+
+/// Up to where no event function changes faster than it is looked at; now_ holds what they are there. By chance a long
+/// time may seem to be resolved that is none, so looks become longer by and by.
+double EventWatch::resolved_until(double time, const DenseOutput& state) {
+  constexpr int most_halvings = 16;
+  constexpr double longer = 4.0;
+  if (resolved_ > 0.0) time = std::min(time, time_ + longer * resolved_);
+  now_.resize(2 * events_.size());
+  for (int halving = 0;; ++halving) {
+    roots(state(time), now_.data());
+    bool is_resolved = true;
+    for (std::size_t i = 0; is_resolved && i < events_.size(); ++i) is_resolved = this->is_resolved(i, time, state);
+    if (is_resolved || halving == most_halvings) {
+      resolved_ = halving > 0 ? time - time_ : std::max(resolved_, time - time_);
+      return time;
+    }
+    time = time_ + 0.5 * (time - time_);
+  }
+}
+
 std::optional<EventWatch::Fall> EventWatch::look(double time, const DenseOutput& state, const int* is_root) {
+  while (true) {
+    const double until = resolved_until(time, state);
+    const std::optional<Fall> fall = look_until(until, state, until == time ? is_root : nullptr);
+    if (fall || until == time) return fall;
+  }
+}
+
+/// now_ holds what event functions are at this time.
+std::optional<EventWatch::Fall> EventWatch::look_until(double time, const DenseOutput& state, const int* is_root) {
   before_ = events_;
   std::optional<Fall> first;
-  now_.resize(2 * events_.size());
-  roots(state(time), now_.data());
   for (std::size_t i = 0; i < events_.size(); ++i) {
     Watched& watched = events_[i];
     const bool is_fall = is_root != nullptr && is_root[i] != 0 && watched.readiness == Readiness::armed;

@@ -49,7 +49,8 @@ struct FlowOptions {
 // itself never counts.
 //
 // h_P = h_x f tells where h is least between two looks (2.57-2.60), so that a pair of crossings inside one step is
-// found; a least value that is not below zero is a contact.
+// found; a least value that is not below zero is a contact. Where h changes faster than the states, as one of a clock
+// does, and the time between two looks is too long for it, there are more looks in between.
 
 /// x(t) inside the last integration step; valid until the next call.
 using DenseOutput = std::function<const double*(double t)>;
@@ -113,6 +114,9 @@ class EventWatch {
   /// When this event falls in (time_, end], where its h and rate are now those given; updates its readiness.
   std::optional<double> fall(Watched& watched, double end, double h, double rate, bool is_minimum,
                              const DenseOutput& state);
+  bool is_resolved(std::size_t i, double time, const DenseOutput& state) const;
+  double resolved_until(double time, const DenseOutput& state);
+  std::optional<Fall> look_until(double time, const DenseOutput& state, const int* is_root);
   void look_again_from(double time, const DenseOutput& state);
 
   const HybridSystem& system_;
@@ -120,6 +124,7 @@ class EventWatch {
   const Eigen::VectorXd& par_;
   Eigen::VectorXd sizes_;
   double time_ = 0.0;
+  double resolved_ = 0.0;  // length of the longest look that was short enough
   std::vector<Watched> events_;
   // What is looked at at every step is kept here.
   std::vector<Watched> before_;
