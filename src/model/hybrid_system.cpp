@@ -129,6 +129,21 @@ const tchat_chatter* HybridSystem::chatter_with_limit(int jump) const {
   return nullptr;
 }
 
+const tchat_chatter* HybridSystem::chatter_of_impact(const IndexVector& index) const {
+  for (int k = 0; k < table_->chatter_modes; ++k)
+    if (const tchat_chatter& mode = table_->chatter[k]; IndexVector{mode.field, mode.event, mode.impact} == index)
+      return &mode;
+  return nullptr;
+}
+
+bool HybridSystem::is_made_of_impacts(FunctionKind kind, int index) const {
+  const std::span modes(table_->chatter, static_cast<std::size_t>(table_->chatter_modes));
+  return std::any_of(modes.begin(), modes.end(), [&](const tchat_chatter& mode) {
+    return kind == FunctionKind::jump ? index == mode.limit
+                                      : kind == FunctionKind::event && (index == mode.margin || index == mode.time);
+  });
+}
+
 int HybridSystem::count(FunctionKind kind) const {
   switch (kind) {
     case FunctionKind::field:

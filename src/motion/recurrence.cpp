@@ -21,8 +21,8 @@ constexpr int too_many_zeros = 50;
 
 }  // namespace
 
-void ChatteringDetector::add(const IndexVector& index, double duration, double uncertainty) {
-  segments_.push_back({index, duration, uncertainty});
+void ChatteringDetector::add(const IndexVector& index, double duration, double uncertainty, bool has_limit) {
+  segments_.push_back({index, duration, uncertainty, has_limit});
   if (segments_.size() > most_kept) segments_.pop_front();
   zeros_ = duration > 0.0 ? 0 : zeros_ + 1;
   const std::size_t last = segments_.size() - 1;
@@ -59,6 +59,8 @@ std::optional<ChatteringDetector::Accumulation> ChatteringDetector::accumulation
   const std::size_t turns = std::min(shrinking_[q], segments_.size() - 1) / q;
   if (turns < 3 || shrinking_[q] < ratios) return std::nullopt;
   const std::size_t last = segments_.size() - 1;
+  for (std::size_t k = last + 1 - q; k <= last; ++k)
+    if (segments_[k].has_limit) return std::nullopt;
   if (!(segments_[last].duration < shrunk * segments_[last - q * turns].duration)) return std::nullopt;
 
   double sum = 0.0;

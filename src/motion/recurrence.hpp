@@ -35,8 +35,9 @@ class ChatteringDetector {
     double uncertainty = 0.0;  ///< error bound of the limit's time: of the extrapolation and of the durations
   };
 
-  /// The next segment: what ended it, how long it lasted, and how well that is known.
-  void add(const IndexVector& index, double duration, double uncertainty = 0.0);
+  /// The next segment: what ended it, how long it lasted, and how well that is known. `has_limit`: the problem itself
+  /// says where such events accumulate, and only many of no duration do so elsewhere.
+  void add(const IndexVector& index, double duration, double uncertainty = 0.0, bool has_limit = false);
   /// When durations have shrunk by a factor of 1000 and the last ratios agree; at once after many zero durations.
   std::optional<Accumulation> accumulation() const;
 
@@ -46,6 +47,7 @@ class ChatteringDetector {
   struct Segment {
     IndexVector index;
     double duration, uncertainty;
+    bool has_limit;
   };
   std::optional<Accumulation> accumulation(std::size_t pattern) const;
   Accumulation limit(std::size_t pattern, std::size_t turns, double ratio) const;

@@ -71,7 +71,8 @@ MotionEnd MotionJudge::end_of(const HybridSimulation& simulation, const Simulate
 MotionEnd MotionJudge::look(const HybridSimulation& simulation, const SimulatedSegment& segment, bool is_transient) {
   if (!goes_on(segment)) return end_of(simulation, segment);
   if (events_++ < of_start) sizes_ = simulation.sizes();
-  chattering_.add(segment.index, segment.duration, simulation.time_uncertainty(segment));
+  chattering_.add(segment.index, segment.duration, simulation.time_uncertainty(segment),
+                  simulation.system().chatter_of_impact(segment.index) != nullptr);
   decay_.add(segment.index, segment.event_velocity);
   accumulation_ = chattering_.accumulation();
   if (accumulation_) return MotionEnd::accumulates;

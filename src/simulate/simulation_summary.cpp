@@ -163,7 +163,9 @@ std::string why_it_ended(const HybridSystem& system, const SimulationResult& res
     const IndexVector& v = last.index;
     const auto name = [&](FunctionKind kind, int index) { return system.function_name(kind, index); };
     const std::string cure =
-        limit.pattern == 1
+        system.chatter_of_impact(v) != nullptr
+            ? "has no limit that the problem's contact mode would see (page chatter, Mistakes).\n"
+        : limit.pattern == 1
             ? fmt::format(
                   "needs a mode of its own: in formulas `contact resting on {} until lifts: {}, {} -> settled`\n"
                   "if it rests there (page chatter).\n",
@@ -231,22 +233,12 @@ std::string start_text(const HybridSystem& system, const SimulationStart& start,
   return text;
 }
 
-namespace {
-
-/// Does the problem list a chatter mode whose impacts have this jump?
-bool may_accumulate(const HybridSystem& system, int jump) {
-  const std::span modes(system.table().chatter, static_cast<std::size_t>(system.table().chatter_modes));
-  return std::any_of(modes.begin(), modes.end(), [&](const tchat_chatter& mode) { return mode.impact == jump; });
-}
-
-}  // namespace
-
 std::string course_text(const HybridSystem& system, const SimulationResult& result, double end_time, double contact) {
   std::string text = fmt::format("{} up to t = {:.12g}", counted(result.events, "event"), end_time);
   if (result.dropped > 0) text += fmt::format(", the first {} dropped as transient", result.dropped);
   text += "\n" + why_it_ended(system, result);
   for (const auto& [index, series] : result.broken_series)
-    if (may_accumulate(system, index.jump))
+    if (system.chatter_of_impact(index) != nullptr)
       text += fmt::format(
           "Chatter is not complete: {} series of events of jump {} ({}) at falling intervals, up to {} in a "
           "row,\nended in a longer one, before any limit.\n",

@@ -34,6 +34,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -117,19 +118,25 @@ class ChatterFunctions : ImpactFlights<Problem> {
     return -acceleration(x, par);
   }
 
-  /// The state next to x with h = v = a = 0, which differs from it in three states: by Newton's method with the matrix
-  /// at x, once for numbers, which are near, and as often as derivatives are nested.
+  /// The state next to x with h = v = a = 0, which differs from it in three states: by Newton's method for numbers, and
+  /// with the matrix there as often as derivatives are nested.
   template <class T>
   void leave(const T* x, const T* par, T* out) const {
-    const Point at = numbers(x, par);
-    const auto [states, inverse] = this->release_matrix(at.x.data(), at.par.data());
-    for (std::size_t i = 0; i < n; ++i) out[i] = x[i];
-    for (int k = 0; k <= derivative_depth<T>; ++k) {
-      const T* const here = out;
-      const std::array<T, 3> rest{this->height(here, par), rate(here, par), acceleration(here, par)};
-      for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j) out[states[i]] -= inverse[i][j] * rest[j];
+    const Point from = numbers(x, par);
+    Point at = from;
+    auto matrix = this->release_matrix(at.x.data(), at.par.data());
+    constexpr int most = 16;
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
+    double change = HUGE_VAL;  // as a share of the states
+    for (int k = 0; k < most && change > 4.0 * epsilon; ++k) {
+      if (k > 0) matrix = this->release_matrix(at.x.data(), at.par.data(), &matrix.states);
+      change = correct(matrix, at.par.data(), at.x);
     }
+    if (!(change * change <= epsilon)) throw NoValue("no state is near in which contact ends");
+    State<T> there;
+    for (std::size_t i = 0; i < n; ++i) there[i] = x[i] + (at.x[i] - from.x[i]);
+    for (int k = 0; k < derivative_depth<T>; ++k) correct(matrix, par, there);
+    for (std::size_t i = 0; i < n; ++i) out[i] = there[i];
   }
 
   /// Where all impacts from the one at x on lead to, and how long they take. Where they do not accumulate, a
@@ -211,6 +218,22 @@ class ChatterFunctions : ImpactFlights<Problem> {
   using Base::numbers;
   using Base::rate;
   using Base::restitution;
+
+  /// One step of leave(). Returns the largest change, as a share of its state.
+  template <class Matrix, class T>
+  double correct(const Matrix& matrix, const T* par, State<T>& x) const {
+    const std::array<T, 3> rest{this->height(x.data(), par), rate(x.data(), par), acceleration(x.data(), par)};
+    double largest = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      T change(0.0);
+      for (std::size_t j = 0; j < 3; ++j) change -= matrix.inverse[i][j] * rest[j];
+      T& state = x[matrix.states[i]];
+      const double before = std::fabs(plain(state));
+      state += change;
+      largest = std::fmax(largest, std::fabs(plain(change)) / std::fmax(before, std::fabs(plain(state))));
+    }
+    return largest;
+  }
 
   static constexpr std::size_t orders = 8;
   static constexpr int most_impacts = 200;    // before those near the limit

@@ -141,12 +141,13 @@ class ImpactFlights {
   }
 
   /// Three states by which h, v and a can be set, those with the largest determinant whose terms do not cancel, and the
-  /// inverse of the derivatives of h, v and a by them.
+  /// inverse of the derivatives of h, v and a by them. They may have been chosen before.
   struct ReleaseMatrix {
     std::array<std::size_t, 3> states;
     std::array<std::array<double, 3>, 3> inverse;
   };
-  ReleaseMatrix release_matrix(const double* x, const double* par) const {
+  ReleaseMatrix release_matrix(const double* x, const double* par,
+                               const std::array<std::size_t, 3>* chosen = nullptr) const {
     Moving<static_cast<int>(n), double> at(x, par);
     for (std::size_t i = 0; i < n; ++i) at.state[i].derivative[i] = 1.0;
     const std::array<State<double>, 3> by = {Height{}(*this, at.x(), at.par()).derivative,
@@ -156,7 +157,10 @@ class ImpactFlights {
     double largest = 0.0;
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < i; ++j)
-        for (std::size_t k = 0; k < j; ++k) take_if_larger(by, {i, j, k}, largest, best);
+        for (std::size_t k = 0; k < j; ++k) {
+          const std::array<std::size_t, 3> states{i, j, k};
+          if (chosen == nullptr || *chosen == states) take_if_larger(by, states, largest, best);
+        }
     if (!(largest > 0.0)) throw NoValue("no three states set the height, its rate and its acceleration");
     return best;
   }

@@ -845,15 +845,26 @@ class ProblemTable {
   }
 
   /// After an impact from which on they accumulate, the next one may be the limit of all; it is where they are near
-  /// that. Behind a section on the way there it is where the next one is. After the limit comes contact.
+  /// that. Behind a section on the way there it is where the next one is. After the limit comes contact, which lasts
+  /// until its release, whatever other events the problem lists for it.
   static void allow_limit(const Problem& problem, const Chatter& mode, const std::array<int, 3>& from, const double* x,
                           const double* par, IndexVectors& next) {
     const std::array<int, 3> impact{mode.field, mode.event, mode.impact};
     const std::array<int, 3> limit{mode.field, mode.event, mode.limit};
-    if (from == limit) next = {{mode.contact, mode.release, mode.leave}};
+    const std::array<int, 3> release{mode.contact, mode.release, mode.leave};
+    if (from == limit || (from[0] == mode.contact && from != release)) {
+      bool stays = false, is_listed = false;
+      for (const auto& index_vector : next) {
+        stays = stays || index_vector[0] == mode.contact;
+        is_listed = is_listed || index_vector == release;
+      }
+      if (!stays) next = from == limit ? IndexVectors{} : IndexVectors{from};
+      if (!is_listed || !stays) next.push_back(release);
+      return;
+    }
     std::size_t place = 0;
     while (place < next.size() && next[place] != impact) ++place;
-    if (from == limit || place == next.size()) return;
+    if (place == next.size()) return;
     const ChatterFunctions functions(problem, mode);
     int before = -1;
     if (from == impact)
