@@ -57,11 +57,7 @@ class LostContacts {
     LabelledOrbit& orbit = result.orbit;
     orbit.start = {joined_orbit(x_, pieces), std::nullopt};
     if (is_closed_) cut_again(wanted, list, result);
-    const RunSettings& old = source_.settings;
-    orbit.settings = new_settings(old, list, {old.problem_type, old.branch_mode, old.grazing_jump, false}, system_);
-    orbit.solution.type = static_cast<int>(PointType::end);
-    orbit.solution.kind = {};
-    orbit.solution.further.clear();
+    orbit = with_segments(source_, std::move(orbit.start.orbit), list, system_);
     result.signature = orbit.settings.signature();
     return result;
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 #include "base/levels.hpp"
 #include "base/messages.hpp"
@@ -375,6 +376,16 @@ NewOrbit to_repeated(const LabelledOrbit& source) {
 }
 
 }  // namespace
+
+LabelledOrbit with_segments(LabelledOrbit labelled, Orbit x, const SegmentList& segments, const HybridSystem& system) {
+  const RunSettings old = labelled.settings;
+  labelled.settings = new_settings(old, segments, {old.problem_type, old.branch_mode, old.grazing_jump, false}, system);
+  labelled.solution.type = static_cast<int>(PointType::end);
+  labelled.solution.kind = {};
+  labelled.solution.further.clear();
+  labelled.start = {std::move(x), std::nullopt};
+  return labelled;
+}
 
 NewOrbit new_orbit(const ResegmentRequest& request, const LabelledOrbit& source, const HybridSystem& system) {
   if (request.repeats != 1 && request.kind != ResegmentKind::impacting)

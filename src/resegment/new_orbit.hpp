@@ -31,6 +31,9 @@ struct LabelledOrbit {
   }
 };
 
+/// The labelled orbit as x of these segments, whole: no special point any more, without direction.
+LabelledOrbit with_segments(LabelledOrbit labelled, Orbit x, const SegmentList& segments, const HybridSystem& system);
+
 /// What the next run is to continue.
 struct NewOrbit {
   SegmentList segments;

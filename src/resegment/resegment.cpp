@@ -232,6 +232,15 @@ LabelledOrbit without_contacts(ResegmentRequest& request, LabelledOrbit source, 
   return std::move(found->orbit);
 }
 
+/// The orbit with as many impacts before limits of chatter as the signature that is wanted.
+LabelledOrbit with_impacts(const ResegmentRequest& request, LabelledOrbit source, const HybridSystem& system) {
+  if (request.kind != ResegmentKind::signature || !request.signature) return source;
+  std::optional<OtherImpacts> found =
+      with_other_impacts(system, segments_of(source.settings), source.start.orbit, parse_signature(*request.signature));
+  if (!found) return source;
+  return with_segments(std::move(source), std::move(found->orbit), found->segments, system);
+}
+
 /// The orbit with a section: one that has none is cut at its contact.
 LabelledOrbit with_section(const ResegmentRequest& request, LabelledOrbit labelled, const HybridSystem& system,
                            const std::string& problem, const std::string& path) {
@@ -337,8 +346,8 @@ std::vector<std::string> resegment(const ResegmentRequest& asked, std::ostream& 
   require_recorded_parameters(path, system);
   place_source(labelled, system.layout(), path);
   std::vector<Birth::InnerContact> lost;
-  const LabelledOrbit source =
-      without_contacts(request, with_section(request, labelled, system, problem, path), system, lost);
+  const LabelledOrbit source = with_impacts(
+      request, without_contacts(request, with_section(request, labelled, system, problem, path), system, lost), system);
   if (request.kind == ResegmentKind::grazing_curve && !source.settings.conserved.empty() &&
       !is_overridden(request.overrides, "ICP"))
     throw UserError(fmt::format(

@@ -11,6 +11,7 @@
 #include "base/messages.hpp"
 #include "model/events.hpp"
 #include "model/scales.hpp"
+#include "motion/orbit_flow.hpp"
 
 namespace tchat {
 
@@ -275,6 +276,156 @@ class SignatureMatch {
 
 SegmentList matched(const HybridSystem& system, const SegmentList& old, const Orbit& x, const Signature& signature) {
   return SignatureMatch(system, old, x, signature).best();
+}
+
+namespace {
+
+constexpr double longest_flight = 10.0;  // in periods
+
+/// A segment, and how many impacts before it are those of a limit in which it ends.
+struct LimitPart {
+  std::size_t at;
+  std::size_t impacts = 0;
+};
+
+/// Is this segment an impact that others follow up to their limit?
+bool comes_before_limit(const HybridSystem& system, const Signature& signature, std::size_t at) {
+  const tchat_chatter* const mode = system.chatter_of_impact(signature[at]);
+  std::size_t next = at;
+  do next = (next + 1) % signature.size();
+  while (mode != nullptr && next != at && signature[next] == signature[at]);
+  return mode != nullptr && signature[next] == IndexVector{mode->field, mode->event, mode->limit};
+}
+
+std::vector<LimitPart> parts_of(const HybridSystem& system, const Signature& signature) {
+  std::vector<LimitPart> parts;
+  const std::size_t m = signature.size();
+  for (std::size_t at = 0; at < m; ++at) {
+    if (comes_before_limit(system, signature, at)) continue;
+    parts.push_back({at});
+    while (parts.back().impacts < m && comes_before_limit(system, signature, (at + m - parts.back().impacts - 1) % m))
+      ++parts.back().impacts;
+  }
+  return parts;
+}
+
+/// Puts the new orbit together, part by part.
+class ImpactsBeforeLimits {
+ public:
+  ImpactsBeforeLimits(const HybridSystem& system, const SegmentList& old, const Orbit& x, const Signature& signature)
+      : system_(system), old_(old), x_(x), signature_(signature), wanted_(parts_of(system, signature)) {
+    for (const NewSegment& segment : old) known_.push_back(segment.index);
+    parts_ = parts_of(system, known_);
+    options_.variational = false;
+    options_.sizes = state_sizes(system, known_, x);
+    options_.max_duration = longest_flight * x.period();
+  }
+
+  std::optional<OtherImpacts> find() {
+    for (std::size_t turn = 0; parts_.size() == wanted_.size() && turn < parts_.size(); ++turn) {
+      std::rotate(parts_.begin(), parts_.begin() + 1, parts_.end());
+      if (agree() && differ()) return build();
+    }
+    return std::nullopt;
+  }
+
+ private:
+  bool agree() const {
+    for (std::size_t j = 0; j < parts_.size(); ++j)
+      if (known_[parts_[j].at] != signature_[wanted_[j].at]) return false;
+    return true;
+  }
+  bool differ() const {
+    for (std::size_t j = 0; j < parts_.size(); ++j)
+      if (parts_[j].impacts != wanted_[j].impacts) return true;
+    return false;
+  }
+
+  const NewSegment& old_segment(const LimitPart& part, std::size_t before) const {
+    return old_[(part.at + old_.size() - before) % old_.size()];
+  }
+
+  OtherImpacts build() {
+    SegmentList list;
+    std::vector<std::pair<std::size_t, std::size_t>> changed;  // new segments that end in a limit, and their parts
+    for (std::size_t j = 0; j < parts_.size(); ++j) {
+      const std::size_t had = parts_[j].impacts, has = wanted_[j].impacts;
+      const IndexVector& last = known_[parts_[j].at];
+      for (std::size_t k = 0; k <= has; ++k) {  // flights beyond those that there are begin as copies of the last one
+        list.push_back(old_segment(parts_[j], had - std::min(k, had)));
+        list.back().index = k < has ? impact_of(last) : last;
+      }
+      if (had != has) changed.emplace_back(list.size() - 1, j);
+    }
+    std::vector<OrbitPiece> pieces;
+    for (const NewSegment& segment : list) pieces.push_back(segment.piece);
+    OtherImpacts result{assemble({x_, std::nullopt}, pieces).orbit, std::move(list)};
+    for (const auto& [limit, part] : changed) fly(result, limit, parts_[part], wanted_[part].impacts);
+    for (std::size_t s = 0; s < result.segments.size(); ++s) result.segments[s].piece = {static_cast<int>(s), 0.0, 1.0};
+    return result;
+  }
+
+  IndexVector impact_of(const IndexVector& limit) const {
+    const tchat_chatter& mode = *system_.chatter_with_limit(limit.jump);
+    return {mode.field, mode.event, mode.impact};
+  }
+
+  /// The flights up to this limit that are new, and the contact after it.
+  void fly(OtherImpacts& result, std::size_t limit, const LimitPart& part, std::size_t has) const {
+    Orbit& x = result.orbit;
+    const std::size_t m = result.segments.size(), contact = (limit + 1) % m;
+    double later = 0.0;  // the limit's first impact
+    for (std::size_t k = has + 1; k <= part.impacts; ++k)
+      later -= x_.duration(old_segment(part, part.impacts - k).piece.segment);
+    for (std::size_t k = part.impacts + 1; k <= has; ++k) {
+      const std::size_t s = (limit + m - (has - k)) % m;
+      const Vector start = after(x, (s + m - 1) % m, result.segments[(s + m - 1) % m].index.jump);
+      const SegmentFlow flight = integrate_segment(system_, result.segments[s].index, start, x.par, options_);
+      if (flight.status != FlowStatus::event_reached)
+        throw UserError(fmt::format("--signature {}: so many impacts do not come before the limit: {}",
+                                    to_string(signature_), flight.message));
+      fill(x, static_cast<int>(s), result.segments[s].index.field, start, flight.duration);
+      later += flight.duration;
+    }
+    const double rest = x.duration(static_cast<int>(contact)) - later;
+    if (!(rest > 0.0))
+      throw UserError(
+          fmt::format("--signature {}: contact has ended before so many impacts have come", to_string(signature_)));
+    fill(x, static_cast<int>(contact), result.segments[contact].index.field,
+         after(x, limit, result.segments[limit].index.jump), rest);
+  }
+
+  Vector after(const Orbit& x, std::size_t s, int jump) const {
+    Vector result(x.shape.dimension);
+    system_.value(FunctionKind::jump, jump, x.end(static_cast<int>(s)), x.par.data(), result.data());
+    if (result.allFinite()) return result;
+    throw UserError(fmt::format("--signature {}: jump {} ({}) has no value after so many impacts",
+                                to_string(signature_), jump, system_.function_name(FunctionKind::jump, jump)));
+  }
+
+  void fill(Orbit& x, int s, int field, Vector state, double duration) const {
+    x.duration(s) = duration;
+    for (int k = 0; k < x.shape.nodes_of(s); ++k) {
+      const double step = k == 0 ? 0.0 : (x.tau(s, k) - x.tau(s, k - 1)) * duration;
+      if (k > 0) state = integrate_for(system_, field, state, x.par, step, options_).end_state;
+      Eigen::Map<Vector>(x.node(s, k), state.size()) = state;
+    }
+  }
+
+  const HybridSystem& system_;
+  const SegmentList& old_;
+  const Orbit& x_;
+  const Signature& signature_;
+  Signature known_;
+  std::vector<LimitPart> parts_, wanted_;  // of the orbit, in the order of those of the signature
+  FlowOptions options_;
+};
+
+}  // namespace
+
+std::optional<OtherImpacts> with_other_impacts(const HybridSystem& system, const SegmentList& old, const Orbit& x,
+                                               const Signature& signature) {
+  return ImpactsBeforeLimits(system, old, x, signature).find();
 }
 
 }  // namespace tchat

@@ -1,6 +1,7 @@
 /// Segments of zero duration: which ones follow an impact, and orbits of one signature as orbits of another.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,5 +43,19 @@ void require_fit(const HybridSystem& system, const Signature& signature, const O
 /// takes its place, if it ends in the same event, grazes. Throws UserError when the numbers of segments do not allow it
 /// or when nothing fits (then it says what fits worst).
 SegmentList matched(const HybridSystem& system, const SegmentList& old, const Orbit& x, const Signature& signature);
+
+// An orbit with chatter (tchat_chatter) on which more impacts, or fewer, come before the limit of all others.
+
+struct OtherImpacts {
+  Orbit orbit;
+  SegmentList segments;  ///< of `orbit`, whole
+};
+
+/// The segments of `old` (whole, of orbit x) as `signature` has them, if the two differ in how many impacts come before
+/// limits, and nothing where they differ otherwise or not at all. Further flights are integrated, and so is the contact
+/// after such a limit, which begins where the impacts that the limit stands for do. Throws UserError where there are no
+/// so many impacts before the release.
+std::optional<OtherImpacts> with_other_impacts(const HybridSystem& system, const SegmentList& old, const Orbit& x,
+                                               const Signature& signature);
 
 }  // namespace tchat
