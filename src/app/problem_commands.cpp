@@ -20,7 +20,7 @@
 #include "files/auto_format.hpp"
 #include "files/replaced_file.hpp"
 #include "files/run_files.hpp"
-#include "kinds/conservation_check.hpp"
+#include "kinds/model_check.hpp"
 #include "model/derivative_check.hpp"
 #include "model/parameter_vector.hpp"
 #include "plugin/compiler.hpp"
@@ -229,8 +229,8 @@ void require_functions(const HybridSystem& system, const RunSettings& settings) 
 }
 
 /// Of the function that CONSERVED names; nothing without one.
-std::optional<ConservationCheck> conservation(const HybridSystem& system, const RunSettings& settings,
-                                              const DerivativeCheckOptions& options) {
+std::optional<ModelCheck> conservation(const HybridSystem& system, const RunSettings& settings,
+                                       const DerivativeCheckOptions& options) {
   if (settings.conserved.empty()) return std::nullopt;
   require_functions(system, settings);
   const Quantity conserved = conserved_quantity(system, settings.conserved);
@@ -259,11 +259,13 @@ int check_problem(const CheckArguments& arguments) {
   if (library.system().boundary_conditions() > 0 && settings) options.segments = segment_count(*settings);
   const DerivativeCheck check = check_derivatives(library.system(), options);
   const auto conserved = settings ? conservation(library.system(), *settings, options) : std::nullopt;
-  const bool is_conserved = !conserved || conserved->is_conserved;
-  fmt::print("{}", to_text(library.system(), check, conserved ? conserved->text : "", is_conserved));
+  const ModelCheck chatter = check_chatter(library.system(), options);
+  const bool is_fine = chatter.is_fine && (!conserved || conserved->is_fine);
+  const std::string further = chatter.text + (conserved ? conserved->text : "");
+  fmt::print("{}", to_text(library.system(), check, further, is_fine));
   if (const std::optional<std::string> formulas = formulas_of(plugin))
     for (const std::string& remark : translate_formula_file(*formulas).remarks) fmt::print("Note: {}\n", remark);
-  return check.fine() && is_conserved ? 0 : 1;
+  return check.fine() && is_fine ? 0 : 1;
 }
 
 }  // namespace

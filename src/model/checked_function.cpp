@@ -77,7 +77,13 @@ TestPoint CheckedFunction::moved(TestPoint at, int c, double t) const {
   return at;
 }
 
+TestPoint CheckedFunction::moved(TestPoint at, const VectorXd& steps) const {
+  for (int c = 0; c < variables(); ++c) at = moved(std::move(at), c, steps(c));
+  return at;
+}
+
 std::string CheckedFunction::variable_name(int c) const {
+  if (c < 0) return "a random direction";
   return c < system_.dimension() ? system_.state_name(c + 1) : system_.parameter_name(parameter(c));
 }
 
@@ -198,6 +204,33 @@ MatrixComparison compare_with_differences(const CheckedFunction& function, const
       }
       if (!entry) continue;
       if (entry->at_fault()) comparison.faults.push_back(*entry);
+      if (entry->excess > comparison.worst.excess) comparison.worst = *entry;
+    }
+  }
+  return comparison;
+}
+
+MatrixComparison compare_along_directions(const CheckedFunction& function, const TestPoint& at,
+                                          const std::vector<VectorXd>& directions,
+                                          const std::function<MatrixXd(const TestPoint&)>& supplied,
+                                          const std::function<VectorXd(const TestPoint&)>& value) {
+  MatrixComparison comparison;
+  const MatrixXd here = supplied(at);
+  for (const VectorXd& direction : directions) {
+    VectorXd reach = direction;
+    for (int c = 0; c < function.variables(); ++c) reach(c) *= checked_range(function.variable(at, c));
+    const VectorXd along = here * reach;
+    const double scale =
+        1.0 + std::max(value(at).lpNorm<Eigen::Infinity>(), (here.cwiseAbs() * reach.cwiseAbs()).maxCoeff());
+    ColumnComparison column([&](double t) { return value(function.moved(at, t * reach)); }, 0.02, scale);
+    for (int r = 0; r < function.rows(); ++r) {
+      ComparedEntry place;
+      place.row = r;
+      place.column = -1;
+      place.supplied = along(r);
+      const std::optional<ComparedEntry> entry = column.entry(place);
+      if (!entry) continue;
+      if (entry->at_fault()) return compare_with_differences(function, at, supplied, value);
       if (entry->excess > comparison.worst.excess) comparison.worst = *entry;
     }
   }

@@ -47,7 +47,10 @@ class CheckedFunction {
   double variable(const TestPoint& at, int c) const;
   /// The point with variable c moved by t.
   TestPoint moved(TestPoint at, int c, double t) const;
+  /// The point moved by these steps of all variables.
+  TestPoint moved(TestPoint at, const Eigen::VectorXd& steps) const;
 
+  /// "x2"; of c = -1 "a random direction".
   std::string variable_name(int c) const;
   /// "f_1[x2]", "h_3", "g_1[x1]"
   std::string row_name(int row) const;
@@ -63,9 +66,9 @@ class CheckedFunction {
 
 /// An entry of a matrix of derivatives against differences.
 struct ComparedEntry {
-  double relative = 0.0;  // distance by the function's scale
-  double excess = 0.0;    // distance by what is allowed
-  int row = 0, column = 0;
+  double relative = 0.0;    // distance by the function's scale
+  double excess = 0.0;      // distance by what is allowed
+  int row = 0, column = 0;  // column -1: along a direction
   double supplied = 0.0, difference = 0.0;
   bool at_fault() const { return excess > 1.0; }
 };
@@ -81,6 +84,14 @@ struct MatrixComparison {
 /// passed over. `supplied` is evaluated again at points with other last digits where an entry seems to be at fault:
 /// what changes with them is rounding, and no fault.
 MatrixComparison compare_with_differences(const CheckedFunction& function, const TestPoint& at,
+                                          const std::function<Eigen::MatrixXd(const TestPoint&)>& supplied,
+                                          const std::function<Eigen::VectorXd(const TestPoint&)>& value);
+
+/// The same of the derivatives along a few `directions` (in variables, of any length) in place of those by every
+/// variable: of many variables. The worst entry has no column. Where one of them seems to be at fault, every variable
+/// is compared, so that faults have their columns.
+MatrixComparison compare_along_directions(const CheckedFunction& function, const TestPoint& at,
+                                          const std::vector<Eigen::VectorXd>& directions,
                                           const std::function<Eigen::MatrixXd(const TestPoint&)>& supplied,
                                           const std::function<Eigen::VectorXd(const TestPoint&)>& value);
 

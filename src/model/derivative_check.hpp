@@ -33,7 +33,7 @@ std::string to_text(const BoundaryCheck& check);
 //     parameters read beyond the declared ones;
 //   - F_x, F_p against extrapolated differences of F;
 //   - D = F_x v + F_p w against the first derivatives, and D_x, D_p against extrapolated differences of D, along every
-//     state and parameter (along a few random directions when there are many).
+//     state and parameter (of many: both along a few random directions, and differences by each where these disagree).
 //   - derivatives that are not finite where the value is: a fault at a given state, a note at special ones (the
 //     problem's start, zero, and those with one state 0, 1 or -1).
 // An entry is at fault when it differs by more than the differences' own error estimate (times 20) and 1e-8 of the
@@ -70,6 +70,9 @@ struct DerivativeCheck {
 
 /// Where functions are looked at: the given states and random ones near them. Throws UserError as below.
 std::vector<Eigen::VectorXd> checked_states(const HybridSystem& system, const DerivativeCheckOptions& options);
+
+/// The parameters with which they are looked at, as long as a ParameterVector. Throws UserError as below.
+Eigen::VectorXd checked_parameters(const HybridSystem& system, const DerivativeCheckOptions& options);
 
 /// States are taken in units of their sizes. Throws UserError when a state or parameter given has the wrong length or
 /// is not finite.
