@@ -1,8 +1,11 @@
 // Orbits with infinitely many impacts, from simulation to where chatter becomes incomplete.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
+#include <numeric>
 
 #include "end_to_end/workspace.hpp"
 #include "support/ball_impacts.hpp"
@@ -51,6 +54,37 @@ std::vector<std::complex<double>> multipliers(const std::string& text) {
   return values;
 }
 
+/// Trace and determinant of the derivative of n impacts, from the one at the end of the label's last segment on, in
+/// phase and velocity.
+std::pair<double, double> of_impacts(const SolutionEntry& label, int n) {
+  const double gamma = label.parameter(1), r = label.parameter(2);
+  const std::vector<double>& x = label.states.back();
+  const std::size_t last = x.size() - 4;
+  const double phase = std::atan2(x[last + 2], x[last + 3]), velocity = x[last + 1] - x[last + 3];
+  const auto image = [&](double dt, double dv) {
+    BallImpacts impacts(gamma, r, phase + dt, velocity + dv);
+    for (int k = 0; k < n; ++k) REQUIRE(impacts.next());
+    const long double t = impacts.phase();
+    return std::pair{t, impacts.velocity() - gamma * std::cos(t)};
+  };
+  constexpr double step = 1e-7;
+  const auto [t1, v1] = image(step, 0.0);
+  const auto [t2, v2] = image(-step, 0.0);
+  const auto [t3, v3] = image(0.0, step);
+  const auto [t4, v4] = image(0.0, -step);
+  const long double tt = (t1 - t2) / (2 * step), vt = (v1 - v2) / (2 * step), tv = (t3 - t4) / (2 * step),
+                    vv = (v3 - v4) / (2 * step);
+  return {static_cast<double>(tt + vv), static_cast<double>(tt * vv - tv * vt)};
+}
+
+const SolutionEntry& label_of(const std::vector<SolutionEntry>& labels, int type) {
+  const auto found = std::find_if(labels.begin(), labels.end(), [&](const SolutionEntry& l) { return l.type == type; });
+  REQUIRE(found != labels.end());
+  return *found;
+}
+
+constexpr int fold = 5, doubling = 7;  // types of labels
+
 }  // namespace
 
 TEST_CASE("a branch of orbits with complete chatter ends where chatter becomes incomplete") {
@@ -76,7 +110,7 @@ TEST_CASE("a simulation says that chatter is not complete where impacts at falli
   // At Gamma = 1.4, r = 0.7 the table falls away before the ball rests on it; at 1.1, 0.5 the ball comes to rest.
   const Workspace workspace;
   workspace.write("ball.tch", ball);
-  const std::string bounces = workspace.succeed("simulate ball PAR(Gamma)=1.4 PAR(r)=0.7 --events 300 --rows 0").out;
+  const std::string bounces = workspace.succeed("simulate ball PAR(Gamma)=1.4 PAR(r)=0.7 --events 3000 --rows 0").out;
   INFO(bounces);
   CHECK(contains(bounces, "Chatter is not complete: "));
   CHECK(contains(bounces, "of jump 1 (impact) at falling intervals"));
@@ -158,6 +192,126 @@ TEST_CASE("the curve on which chatter becomes incomplete leads from one restitut
   INFO(outcome.text());
   CHECK(contains(outcome.out, "UZ label 3 at r = 0.3, Gamma = 1.94693848"));
   CHECK_FALSE(contains(outcome.out, "incomplete"));
+}
+
+TEST_CASE("behind the border of chatter orbits with one impact more each come one after the other") {
+  const Workspace workspace;
+  workspace.write("ball.tch", ball);
+  workspace.succeed("simulate ball PAR(Gamma)=1.5982525 --transient-events 3000 --max-period 20 --dat at9 -q");
+  workspace.succeed("run ball -c at9 -d at9 -o at9 --both DSMAX=0.02 DS=0.001 NMX=60 RL0=1.5973 RL1=1.61");
+  workspace.succeed("resegment q.at9 5 --to impacting -o at10");
+  workspace.succeed("run ball -c at10 -s at10 -o at10 DSMAX=0.02 NMX=60 RL0=1.5973 RL1=1.61");
+  for (const int n : {9, 10}) {
+    INFO(n << " impacts");
+    const std::vector<SolutionEntry> labels = workspace.solutions("at" + std::to_string(n));
+    // Multipliers -1 and 1 of the impacts themselves; differences of their long chains know three digits.
+    const auto [trace, determinant] = of_impacts(label_of(labels, doubling), n);
+    CHECK(std::abs(1.0 + trace + determinant) < 1e-3);
+    const auto [of_fold, other] = of_impacts(label_of(labels, fold), n);
+    CHECK(std::abs(1.0 - of_fold + other) < 1e-3);
+  }
+}
+
+TEST_CASE(
+    "orbits behind the border of chatter lie nearer to it by a factor that tends to the growth from impact to impact") {
+  constexpr double border = 1.597348831195154, mu = 1.98959998107406, kappa = 0.660442249723743;
+  const Workspace workspace;
+  workspace.write("ball.tch", ball);
+  std::vector<double> distances;
+  for (const int n : {14, 15, 16}) {
+    const std::string gamma = fmt::format("PAR(Gamma)={:.15g}", border + 6e-7 * std::pow(mu, 20 - n));
+    const std::string name = "at" + std::to_string(n), of_name = " -c " + name + " -d " + name + " -o " + name;
+    const std::string found =
+        workspace.succeed("simulate ball " + gamma + " --transient-events 4000 --max-period 40 --dat " + name).out;
+    INFO(found);
+    CHECK(contains(found, "signature {(1,1,1)}^" + std::to_string(n)));
+    workspace.succeed("run ball" + of_name + " DSMAX=0.002 DS=0.0001 NMX=100 RL1=1.598 EPSL=1e-11 EPSU=1e-11");
+    distances.push_back(label_of(workspace.solutions(name), doubling).parameter(1) - border);
+  }
+  // What a return adds to the distance falls by kappa^2 with each impact, what is left of it by 1 / mu.
+  const double first = mu - distances[0] / distances[1], second = mu - distances[1] / distances[2];
+  CHECK(first > 0.0);
+  CHECK(std::abs(second / first - kappa * kappa * mu) < 0.02);
+  // So near to the border flights fall by the factor kappa for long, and do not accumulate.
+  const std::string near = fmt::format("PAR(Gamma)={:.15g}", border + 6e-7 * mu * mu);
+  CHECK_FALSE(contains(workspace.tchat("simulate ball " + near + " --events 4000").out, "accumulate"));
+}
+
+TEST_CASE("an orbit with chatter goes on with more impacts before their limit, or with fewer") {
+  const Workspace workspace;
+  workspace.write("ball.tch", ball);
+  workspace.succeed("simulate ball --dat rest -q");
+  workspace.succeed("run ball -c rest -d rest -o locked NMX=3 EPSL=1e-11 EPSU=1e-11");
+  const SolutionEntry before = workspace.solutions("locked").front();
+  const auto durations = [](const SolutionEntry& orbit, int count) {
+    std::vector<double> result;
+    for (int k = 1; k <= count; ++k) result.push_back(orbit.parameter(60 + k));
+    return result;
+  };
+  const std::string impact = "1,1,1;", rest = "1,1,3;2,2,4";
+  for (const int explicit_impacts : {6, 4, 2, 1, 0}) {
+    INFO(explicit_impacts << " impacts");
+    std::string signature;
+    for (int k = 0; k < explicit_impacts; ++k) signature += impact;
+    workspace.succeed(std::vector<std::string>{"resegment", "q.locked", "1", "--to", "signature", "--signature",
+                                               signature + rest, "-o", "other"});
+    workspace.succeed("run ball -c other -s other -o run NMX=1");
+    const SolutionEntry after = workspace.solutions("run").front();
+    const std::vector<double> old = durations(before, 5), now = durations(after, explicit_impacts + 2);
+    for (std::size_t k = 0; k <= static_cast<std::size_t>(std::min(3, explicit_impacts)); ++k)
+      CHECK(std::abs(old[k] - now[k]) < 1e-9);
+    CHECK(std::abs(std::accumulate(now.begin(), now.end(), 0.0) - 2.0 * std::acos(-1.0)) < 1e-9);
+    // And back.
+    workspace.succeed(std::vector<std::string>{"resegment", "q.run", "EP1", "--to", "signature", "--signature",
+                                               impact + impact + impact + rest, "-o", "back"});
+    workspace.succeed("run ball -c back -s back -o back NMX=1");
+    const std::vector<double> again = durations(workspace.solutions("back").front(), 5);
+    for (std::size_t k = 0; k < 5; ++k) CHECK(std::abs(old[k] - again[k]) < 1e-9);
+  }
+  // As many as rounding leaves no room for.
+  std::string many;
+  for (int k = 0; k < 60; ++k) many += impact;
+  const Outcome outcome = workspace.tchat(std::vector<std::string>{"resegment", "q.locked", "1", "--to", "signature",
+                                                                   "--signature", many + rest, "-o", "none"});
+  CHECK(outcome.status == 2);
+  CHECK(contains(outcome.err, "so many impacts do not come before the limit"));
+}
+
+TEST_CASE("in contact a clock is put back, and no release is missed where nothing else moves") {
+  const Workspace workspace;
+  workspace.write("clock.tch",
+                  "par F=1.1, r=0.5\nnumber turn=2*pi\ninit h=0.5\nh' = v\nv' = -1 + F*sin(t)\nt' = 1\n"
+                  "event floor = h\nevent full = turn - t\njump impact: v -> -r*v\njump back: t -> t - turn\n"
+                  "contact resting on floor until lifts: flow, impact -> settled\n"
+                  "after settled: resting until full -> back\n"
+                  "after any: flow until floor -> impact, full -> back\n");
+  const std::string out = workspace.succeed("simulate clock --dat clock --max-period 40").out;
+  INFO(out);
+  CHECK(contains(out, "Periodic orbit"));
+  CHECK(contains(out, "period 6.28318530"));
+  CHECK(contains(out, "resting for"));
+  CHECK(contains(out, "until full"));
+  CHECK(contains(out, "infinitely many impacts"));
+  workspace.succeed("run clock -c clock -d clock -o clock NMX=2");
+  CHECK(workspace.tchat("verify q.clock -p clock").status == 0);
+}
+
+TEST_CASE("check finds a jump whose impacts cannot accumulate, and says what restitution others have") {
+  const Workspace workspace;
+  std::string text = ball;
+  workspace.write("ball.tch", text);
+  const std::string right = workspace.succeed("check ball").out;
+  INFO(right);
+  CHECK(contains(right, "chatter of jump 1 (impact) at event 1 (landing): restitution 0.5 at"));
+  const std::string velocity = "(1 + r)*moving";
+  workspace.write("wrong.tch", text.replace(text.find(velocity), velocity.size(), "(1 + r)*w"));
+  const Outcome wrong = workspace.tchat("check wrong");
+  INFO(wrong.text());
+  CHECK(wrong.status == 1);
+  CHECK(contains(wrong.out, "are moved by"));
+  CHECK(contains(wrong.out, "(state velocity)"));
+  CHECK(contains(wrong.out, "impacts cannot accumulate"));
+  CHECK(contains(workspace.succeed("check ball PAR(r)=1.2").out, "restitution 1.2 at"));
 }
 
 TEST_CASE("multipliers of an orbit with chatter are those of its impacts, and three are zero") {

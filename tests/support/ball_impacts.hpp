@@ -35,8 +35,9 @@ class BallImpacts {
     const auto height_by_time = [&](long double s) { return rate - s / 2 - gamma_ * curved(s); };
     const bool is_short = acceleration < 0 && -2 * rate / acceleration < 1;
     const long double step = is_short ? -rate / (50 * acceleration) : 1e-3L;
-    for (long double s = step; s < 10 && (!is_short || s < 1500 * step); s += step)
-      if (height_by_time(s) <= 0) return fly(zero(height_by_time, s - step, s)), true;
+    long double before = 0;
+    for (long double s = step; s < 10; before = s, s += s < 1500 * step ? step : 1e-3L)
+      if (height_by_time(s) <= 0) return fly(zero(height_by_time, before, s)), true;
     return false;
   }
   /// Until contact is near; negative where impacts come to an end before, or a flight is longer than the one before.
