@@ -33,7 +33,7 @@ if shutil.which("gnuplot") is None:
 PROBLEMS = {
     "linosc": ({"alpha": (1.5, 4, 51)}, {"omega": 2.0072}, "max(x2)"),
     "ball": ({"Gamma": (1, 1.75, 76)}, {}, "max(height)"),
-    "buck": ({"Vin": (12, 33, 43)}, {}, "max(u)"),  # as much as max(i), which comes later
+    "buck": ({"Vin": (12, 33, 43)}, {}, "max(u) or max(i)"),  # alike but for chaotic dots
 }
 TOLERANCE = 1e-5  # of width and height: far below a pixel
 
@@ -116,7 +116,7 @@ def main():
         problem = tchat.Problem(source, folder=folder, program=TCHAT)
         diagram = problem.explore(over=over, jobs=2, name="diagram", doublings=2, **values)
         print(diagram)
-        assert diagram.quantity == quantity, diagram.quantity
+        assert diagram.quantity in quantity.split(" or "), diagram.quantity
         assert diagram.coverage == 1.0
         assert diagram.picture().startswith(b"\x89PNG")
         check_dots(diagram)

@@ -295,7 +295,7 @@ class ChatterFunctions : ImpactFlights<Problem> {
   }
 
   /// All that are needed: those that are not near the limit, and 8 s + 1 that are, or fewer where v is as small as
-  /// rounding; or those up to where there is no further one.
+  /// rounding; or those up to where there is no further one, or after a flight twice as long as the one before.
   template <class T>
   Impacts<T> impacts_from(const T* x, const T* par) const {
     const double r = restitution_of_chatter(numbers(x, par));
@@ -305,12 +305,19 @@ class ChatterFunctions : ImpactFlights<Problem> {
     for (std::size_t i = 0; i < n; ++i) here[i] = x[i];
     T time(0.0);
     constexpr double tiny = 1e-8;
+    constexpr double longer = 2.0;
+    double flight = HUGE_VAL;
     const int needed = static_cast<int>(orders) * impacts.apart + 1;
     for (int k = 0; !impacts.is_complete && impacts.near <= most_impacts; ++k) {
       impacts.list.push_back({rate(here.data(), par), here, time});
       if (share_of_border(numbers(here.data(), par), r) > near_enough) impacts.near = k + 1;
       impacts.is_complete = k + 1 - impacts.near == needed;
-      if (impacts.is_complete || fly(jump(here.data(), par), par, here, time)) continue;
+      if (impacts.is_complete) continue;
+      if (fly(jump(here.data(), par), par, here, time)) {
+        const double before = std::exchange(flight, plain(time - impacts.list.back().time));
+        if (flight <= longer * before) continue;
+        break;
+      }
       const bool is_rounding = std::fabs(plain(impacts.list.back().v)) <= tiny * std::fabs(plain(impacts.list[0].v));
       impacts.is_complete = is_rounding && impacts.near <= k;
       break;

@@ -3,8 +3,7 @@
 ///
 /// A flight has the time t as an unknown. In place of h = 0 at its end, with its other root t = 0, stands
 /// h / t = h_0 / t + sum_i b_i v(X_i) = 0 over the Gauss points, v = h_x f, where h_0 = 0 after an impact. Newton's
-/// method solves it for numbers; as many more
-/// steps with the same matrix as derivatives are nested solve it for these.
+/// method solves it for numbers; as many more steps with the matrix there as derivatives are nested solve it for these.
 #pragma once
 
 #include <array>
@@ -194,10 +193,14 @@ class ImpactFlights {
     const std::optional<Solved> solved = resolved_flight(numbers(y.data(), par), 0.0);
     if (!solved) return false;
     Flight<T> flight(solved->flight.begin(), solved->flight.end());
-    for (int k = 0; k < derivative_depth<T>; ++k) {
-      Flight<T> step = residual(solved->rule, y, par, flight);
-      solved->matrix.solve(step);
-      for (std::size_t i = 0; i < flight.size(); ++i) flight[i] -= step[i];
+    if constexpr (derivative_depth < T >> 0) {
+      SmallMatrix matrix(units_of(solved->flight));
+      if (!linearise(solved->rule, numbers(y.data(), par).par.data(), solved->flight, 0.0, matrix)) return false;
+      for (int k = 0; k < derivative_depth<T>; ++k) {
+        Flight<T> step = residual(solved->rule, y, par, flight);
+        matrix.solve(step);
+        for (std::size_t i = 0; i < flight.size(); ++i) flight[i] -= step[i];
+      }
     }
     x = y;
     for (std::size_t j = 0; j < solved->rule.stages(); ++j) {
@@ -299,24 +302,38 @@ class ImpactFlights {
     return units;
   }
 
-  /// A flight for numbers, with the factors of its matrix.
+  /// A flight for numbers.
   struct Solved {
     GaussRule rule;
     Flight<double> flight;
-    SmallMatrix matrix;
   };
+
+  /// By the classical Runge-Kutta method from stage to stage.
+  Flight<double> followed(const GaussRule& rule, const Point& from, double time) const {
+    Flight<double> flight(rule.stages() * n + 1);
+    flight.back() = time;
+    State<double> x = from.x;
+    for (std::size_t j = 0; j < rule.stages(); ++j) {
+      const double step = (rule.c(j) - (j > 0 ? rule.c(j - 1) : 0.0)) * time;
+      State<double> slope{}, at = x, sum = x;
+      for (const auto& [share, weight] : {std::pair{0.0, 1.0}, {0.5, 2.0}, {0.5, 2.0}, {1.0, 1.0}}) {
+        for (std::size_t k = 0; k < n; ++k) at[k] = x[k] + share * step * slope[k];
+        slope = field(at.data(), from.par.data());
+        for (std::size_t k = 0; k < n; ++k) sum[k] += weight / 6.0 * step * slope[k];
+      }
+      x = sum;
+      for (std::size_t k = 0; k < n; ++k) flight[j * n + k] = x[k];
+    }
+    return flight;
+  }
 
   /// One that ends about this time after `from`; nothing where Newton's method finds none.
   std::optional<Solved> solve(const GaussRule& rule, const Point& from, double height, double about) const {
     constexpr int most_iterations = 20;
-    constexpr double solved = 1e-15;
+    constexpr double solved = 1e-9;    // the next move is its square
     constexpr int enough = 5;          // iterations, after which moves that do not get smaller are rounding,
     constexpr double rounding = 1e-3;  // at most this: near the limit v is what is left of far larger rates
-    const State<double> f = field(from.x.data(), from.par.data());
-    Flight<double> flight(rule.stages() * n + 1);
-    flight.back() = about;
-    for (std::size_t j = 0; j < rule.stages(); ++j)
-      for (std::size_t k = 0; k < n; ++k) flight[j * n + k] = from.x[k] + rule.c(j) * flight.back() * f[k];
+    Flight<double> flight = followed(rule, from, about);
     double last = HUGE_VAL;
     for (int k = 0; k < most_iterations; ++k) {
       SmallMatrix matrix(units_of(flight));
@@ -327,7 +344,7 @@ class ImpactFlights {
       for (std::size_t i = 0; i < flight.size(); ++i) flight[i] -= step[i];
       const double move = std::fabs(step.back() / flight.back());
       if (move <= solved || (k >= enough && move <= rounding && move >= 0.5 * last))
-        return flight.back() > 0.0 ? std::optional(Solved{rule, flight, matrix}) : std::nullopt;
+        return flight.back() > 0.0 ? std::optional(Solved{rule, flight}) : std::nullopt;
       last = move;
     }
     return std::nullopt;
@@ -382,6 +399,7 @@ class ImpactFlights {
         continue;
       }
       if (is_resolved(*solved, from.par.data())) return solved;
+      about = solved->flight.back();
       intervals *= 2;
     }
     return std::nullopt;
