@@ -155,12 +155,14 @@ bool AttractorSearch::try_rest(const HybridSimulation& motion) {
   return equilibrium_.has_value();
 }
 
-/// The shortest part of the period that repeats itself comes first.
+/// The shortest part of the period that repeats itself comes first: what is not near itself after fewer events has an
+/// orbit of fewer events elsewhere at most.
 bool AttractorSearch::try_recurrence(const HybridSimulation& motion, int period) {
   doubt_.clear();
   is_near_unstable_ = false;
   for (int q = 1; q <= period; ++q)
     if (period % q == 0 && recurrence_.repeats_events(static_cast<std::size_t>(q)) &&
+        (q == period || recurrence_.difference(static_cast<std::size_t>(q)) <= near) &&
         try_period(motion, static_cast<std::size_t>(q)))
       return true;
   return false;

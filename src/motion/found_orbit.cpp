@@ -229,6 +229,11 @@ FoundOrbit refine(const HybridSystem& system, const Turn& recognised, const Vect
     return found;
   }
   const double share = found.moved.cwiseQuotient(range).lpNorm<Eigen::Infinity>();
+  const double turned = found.map.period * static_cast<double>(turn.size() / found.signature.size());
+  if (!is_guess && !(std::abs(turned - period) <= same_orbit * period)) {
+    found.message = fmt::format("shooting went to another orbit, of period {:.6g}", found.map.period);
+    return found;
+  }
   if (!is_guess && !(share < same_orbit)) {
     found.message = fmt::format("shooting went {:.2g} of its range away, to another orbit", share);
     return found;
