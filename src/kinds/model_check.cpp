@@ -256,8 +256,8 @@ class ImpactsInContact {
     const VectorXd after = jump_at(system_, mode_.impact, x.data(), par_.data()).derivative * d;
     const double r = -contact.rows.row(1).dot(after.cwiseQuotient(sizes));
     if (!std::isfinite(r)) return;
-    least_ = std::min(least_, r);
-    largest_ = std::max(largest_, r);
+    least_ = std::min(least_, r + 0.0);  // no -0
+    largest_ = std::max(largest_, r + 0.0);
   }
 
   const HybridSystem& system_;

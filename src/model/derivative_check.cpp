@@ -169,8 +169,8 @@ class FunctionChecker {
                               function_.row_name(0)));
     }
     const int all = static_cast<int>(points_.size());
-    if (evaluable_.empty() && system_.is_made_of_impacts(check_.kind, check_.index))
-      return check_.notes.push_back(fmt::format("impacts accumulate at none of {} states", all));
+    if (evaluable_.empty() && system_.is_made_by_chatter(check_.kind, check_.index))
+      return check_.notes.push_back(fmt::format("contact begins or ends next to none of {} states", all));
     for (int r = 0; r < rows; ++r) {
       if (failures[static_cast<std::size_t>(r)] == all)
         add_fault(fmt::format("NaN {}", function_.row_name(r)),
@@ -282,7 +282,7 @@ class FunctionChecker {
 
   /// What chatter makes of impacts takes long to evaluate.
   bool takes_every_variable() const {
-    return of_second_.variables() <= many_variables && !system_.is_made_of_impacts(check_.kind, check_.index);
+    return of_second_.variables() <= many_variables && !system_.is_made_by_chatter(check_.kind, check_.index);
   }
 
   void check_along(const TestPoint& at, const VectorXd& direction, const std::string& name) {

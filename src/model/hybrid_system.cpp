@@ -136,10 +136,10 @@ const tchat_chatter* HybridSystem::chatter_of_impact(const IndexVector& index) c
   return nullptr;
 }
 
-bool HybridSystem::is_made_of_impacts(FunctionKind kind, int index) const {
+bool HybridSystem::is_made_by_chatter(FunctionKind kind, int index) const {
   const std::span modes(table_->chatter, static_cast<std::size_t>(table_->chatter_modes));
   return std::any_of(modes.begin(), modes.end(), [&](const tchat_chatter& mode) {
-    return kind == FunctionKind::jump ? index == mode.limit
+    return kind == FunctionKind::jump ? index == mode.limit || index == mode.leave
                                       : kind == FunctionKind::event && (index == mode.margin || index == mode.time);
   });
 }

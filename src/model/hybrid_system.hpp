@@ -77,8 +77,9 @@ class HybridSystem {
   const tchat_chatter* chatter_with_limit(int jump) const;
   /// The one whose impacts are such events.
   const tchat_chatter* chatter_of_impact(const IndexVector& index) const;
-  /// Is it the limit, the margin or the time of a chatter mode, for which impacts are computed?
-  bool is_made_of_impacts(FunctionKind kind, int index) const;
+  /// Is it the limit, the margin or the time of a chatter mode, for which impacts are computed, or its jump after
+  /// contact?
+  bool is_made_by_chatter(FunctionKind kind, int index) const;
   const tchat_problem& table() const { return *table_; }
 
   /// What a value 1 of state k, from 1, is in the units of its user.

@@ -440,6 +440,12 @@ class ModelCheck {
                                      line.ends.front().first.text, line.ends.front().second.text,
                                      fmt::join(field_names_.all(), ", "))};
     const int field = line.field ? field_number(*line.field) : 1;
+    for (std::size_t k = 0; k < model_.contacts.size(); ++k)
+      if (made.from[2] == model_.contacts[k].limit && field != model_.contacts[k].contact)
+        throw FormulaError{
+            line.ends.front().first.at,
+            fmt::format("after {} comes contact: write '{} until {} -> {}'", file().contacts[k].limit.text,
+                        file().contacts[k].name.text, line.ends.front().first.text, line.ends.front().second.text)};
     for (const auto& [event, jump] : line.ends)
       made.next.push_back({field, event_names_.required(event), jump_names_.required(jump)});
     return made;

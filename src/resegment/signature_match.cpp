@@ -351,6 +351,10 @@ class ImpactsBeforeLimits {
     for (std::size_t j = 0; j < parts_.size(); ++j) {
       const std::size_t had = parts_[j].impacts, has = wanted_[j].impacts;
       const IndexVector& last = known_[parts_[j].at];
+      if (had > 0 && has == 0)
+        throw UserError(fmt::format("--signature {}: at least one impact comes before their limit, jump {} ({})",
+                                    to_string(signature_), last.jump,
+                                    system_.function_name(FunctionKind::jump, last.jump)));
       for (std::size_t k = 0; k <= has; ++k) {  // flights beyond those that there are begin as copies of the last one
         list.push_back(old_segment(parts_[j], had - std::min(k, had)));
         list.back().index = k < has ? impact_of(last) : last;

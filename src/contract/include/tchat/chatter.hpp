@@ -193,7 +193,7 @@ class ChatterFunctions : ImpactFlights<Problem> {
   int impacts_before_limit(const double* x, const double* par) const {
     try {
       const Impacts<double> impacts = impacts_from(x, par);
-      return impacts.is_complete ? impacts.near : -1;
+      return impacts.is_complete && keeps_contact(impacts, par) ? impacts.near : -1;
     } catch (const NoValue&) {
       return -1;
     }
@@ -253,6 +253,18 @@ class ChatterFunctions : ImpactFlights<Problem> {
     int apart = 1;  // s
     bool is_complete = false;
   };
+
+  /// Does the jump leave their limit where it is? Else they have none.
+  bool keeps_contact(const Impacts<double>& impacts, const double* par) const {
+    const double moved = std::sqrt(std::numeric_limits<double>::epsilon());  // as a share of the state and its change
+    const Impact<double>& last = impacts.list.back();
+    const State<double> limit = extrapolated(nodes_of(impacts)).state, after = jump(limit.data(), par);
+    for (std::size_t i = 0; i < n; ++i) {
+      const double size = std::fabs(limit[i]) + std::fabs(last.state[i] - impacts.list.front().state[i]);
+      if (!(std::fabs(after[i] - limit[i]) <= moved * size)) return false;
+    }
+    return true;
+  }
 
   double restitution_of_chatter(const Point& at) const {
     const double r = restitution(at.x.data(), at.par.data());

@@ -330,7 +330,7 @@ class ImpactFlights {
   /// One that ends about this time after `from`; nothing where Newton's method finds none.
   std::optional<Solved> solve(const GaussRule& rule, const Point& from, double height, double about) const {
     constexpr int most_iterations = 20;
-    constexpr double solved = 1e-9;    // the next move is its square
+    constexpr double solved = 1e-12;   // the next move is its square
     constexpr int enough = 5;          // iterations, after which moves that do not get smaller are rounding,
     constexpr double rounding = 1e-3;  // at most this: near the limit v is what is left of far larger rates
     Flight<double> flight = followed(rule, from, about);

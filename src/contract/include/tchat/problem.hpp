@@ -61,6 +61,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "tchat/chatter.hpp"
@@ -824,13 +825,7 @@ class ProblemTable {
     std::int32_t count = 0;
     try {
       const std::array<int, 3> last{from[0], from[1], from[2]};
-      IndexVectors next;
-      if constexpr (successors_of_state)
-        next = object(self).successors(last, x, par);
-      else if constexpr (successors_of_x)
-        next = object(self).successors(last, x);
-      else if constexpr (successors_alone)
-        next = object(self).successors(last);
+      IndexVectors next = listed_successors(object(self), last, x, par);
       if constexpr (!chatter.empty())
         for (const Chatter& mode : chatter) allow_limit(object(self), mode, last, x, par, next);
       for (const auto& index_vector : next) {
@@ -844,6 +839,18 @@ class ProblemTable {
     return count;
   }
 
+  static IndexVectors listed_successors(const Problem& problem, const std::array<int, 3>& from, const double* x,
+                                        const double* par) {
+    if constexpr (successors_of_state)
+      return problem.successors(from, x, par);
+    else if constexpr (successors_of_x)
+      return problem.successors(from, x);
+    else if constexpr (successors_alone)
+      return problem.successors(from);
+    else
+      return {};
+  }
+
   /// After an impact from which on they accumulate, the next one may be the limit of all; it is where they are near
   /// that. Behind a section on the way there it is where the next one is. After the limit comes contact, which lasts
   /// until its release, whatever other events the problem lists for it.
@@ -853,13 +860,17 @@ class ProblemTable {
     const std::array<int, 3> limit{mode.field, mode.event, mode.limit};
     const std::array<int, 3> release{mode.contact, mode.release, mode.leave};
     if (from == limit || (from[0] == mode.contact && from != release)) {
-      bool stays = false, is_listed = false;
-      for (const auto& index_vector : next) {
-        stays = stays || index_vector[0] == mode.contact;
-        is_listed = is_listed || index_vector == release;
-      }
-      if (!stays) next = from == limit ? IndexVectors{} : IndexVectors{from};
-      if (!is_listed || !stays) next.push_back(release);
+      const auto of_contact = [&](const IndexVectors& list) {
+        IndexVectors found;
+        for (const auto& index_vector : list)
+          if (index_vector[0] == mode.contact && index_vector != release) found.push_back(index_vector);
+        return found;
+      };
+      // Behind another event in contact what the problem lists for it, else what it lists after the limit.
+      IndexVectors further = of_contact(next);
+      if (further.empty() && from != limit) further = of_contact(listed_successors(problem, limit, x, par));
+      next = std::move(further);
+      next.push_back(release);
       return;
     }
     std::size_t place = 0;
