@@ -210,7 +210,7 @@ class ImpactsInContact {
                                                                     : fmt::format("{:.6g} to {:.6g}", least_, largest_);
     const bool accumulates = least_ > 0.0 && largest_ < 1.0;
     check.text += fmt::format("  {}: restitution {} at {} states in contact{}\n", what, range, moves_.states,
-                              accumulates ? "" : "; where it is not between 0 and 1 impacts do not accumulate");
+                              accumulates ? "" : "; impacts accumulate only where it is between 0 and 1");
   }
 
  private:

@@ -232,7 +232,7 @@ LabelledOrbit without_contacts(ResegmentRequest& request, LabelledOrbit source, 
   return std::move(found->orbit);
 }
 
-/// The orbit with as many impacts before limits of chatter as the signature that is wanted.
+/// The same orbit with the number of impacts before each limit of chatter that --signature asks for.
 LabelledOrbit with_impacts(const ResegmentRequest& request, LabelledOrbit source, const HybridSystem& system) {
   if (request.kind != ResegmentKind::signature || !request.signature) return source;
   std::optional<OtherImpacts> found =

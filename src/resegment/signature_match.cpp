@@ -378,7 +378,7 @@ class ImpactsBeforeLimits {
   void fly(OtherImpacts& result, std::size_t limit, const LimitPart& part, std::size_t has) const {
     Orbit& x = result.orbit;
     const std::size_t m = result.segments.size(), contact = (limit + 1) % m;
-    double later = 0.0;  // the limit's first impact
+    double later = 0.0;  // by how much later contact begins
     for (std::size_t k = has + 1; k <= part.impacts; ++k)
       later -= x_.duration(old_segment(part, part.impacts - k).piece.segment);
     for (std::size_t k = part.impacts + 1; k <= has; ++k) {

@@ -118,8 +118,8 @@ class ChatterFunctions : ImpactFlights<Problem> {
     return -acceleration(x, par);
   }
 
-  /// The state next to x with h = v = a = 0, which differs from it in three states: by Newton's method for numbers, and
-  /// with the matrix there as often as derivatives are nested.
+  /// The state next to x with h = v = a = 0, which differs from it in three states: by Newton's method for numbers;
+  /// then one step for each order of derivatives, with the matrix at that state.
   template <class T>
   void leave(const T* x, const T* par, T* out) const {
     const Point from = numbers(x, par);

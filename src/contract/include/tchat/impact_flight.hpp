@@ -3,7 +3,7 @@
 ///
 /// A flight has the time t as an unknown. In place of h = 0 at its end, with its other root t = 0, stands
 /// h / t = h_0 / t + sum_i b_i v(X_i) = 0 over the Gauss points, v = h_x f, where h_0 = 0 after an impact. Newton's
-/// method solves it for numbers; as many more steps with the matrix there as derivatives are nested solve it for these.
+/// method solves it for numbers; for dual numbers one step follows for each order of derivatives.
 #pragma once
 
 #include <array>
