@@ -176,22 +176,24 @@ bool EventWatch::is_resolved(std::size_t i, double time, const DenseOutput& stat
 }
 
 /// Up to where no event function changes faster than it is looked at; now_ holds what they are there. By chance a long
-/// time may seem to be resolved that is none, so looks become longer by and by.
+/// time may seem to be resolved that is none, so looks become longer by and by. What no look resolves is noise.
 double EventWatch::resolved_until(double time, const DenseOutput& state) {
   constexpr int most_halvings = 16;
   constexpr double longer = 4.0;
   if (resolved_ > 0.0) time = std::min(time, time_ + longer * resolved_);
   now_.resize(2 * events_.size());
-  for (int halving = 0;; ++halving) {
-    roots(state(time), now_.data());
+  double until = time;
+  for (int halving = 0; halving <= most_halvings; ++halving, until = time_ + 0.5 * (until - time_)) {
+    roots(state(until), now_.data());
     bool is_resolved = true;
-    for (std::size_t i = 0; is_resolved && i < events_.size(); ++i) is_resolved = this->is_resolved(i, time, state);
-    if (is_resolved || halving == most_halvings) {
-      resolved_ = halving > 0 ? time - time_ : std::max(resolved_, time - time_);
-      return time;
-    }
-    time = time_ + 0.5 * (time - time_);
+    for (std::size_t i = 0; is_resolved && i < events_.size(); ++i) is_resolved = this->is_resolved(i, until, state);
+    if (!is_resolved) continue;
+    resolved_ = halving > 0 ? until - time_ : std::max(resolved_, until - time_);
+    return until;
   }
+  resolved_ = 0.0;
+  roots(state(time), now_.data());
+  return time;
 }
 
 std::optional<EventWatch::Fall> EventWatch::look(double time, const DenseOutput& state, const int* is_root) {
