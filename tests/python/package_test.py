@@ -327,6 +327,8 @@ class Studies(unittest.TestCase):
         self.assertEqual(sorted(set(sweep["alpha"])), [2.0, 2.25, 2.5, 2.75, 3.0])
         for wrong in ((2, 3), 5, (2, 3, 2.5), (2, 2.1, 3, 4, 5), ("a", "b", "c")):
             self.assertRaisesRegex(tchat.Error, "over=.'alpha'", tchat.sweep, "linosc", over={"alpha": wrong})
+        two = tchat.sweep("linosc", over={"alpha": [2, 3]}, omega=2.0072)
+        self.assertEqual(sorted(set(two["alpha"])), [2.0, 3.0])
 
 
 class Explored(unittest.TestCase):

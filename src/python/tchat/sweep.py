@@ -98,7 +98,8 @@ def over_words(over):
             values = [float(one) for one in values]
         except (TypeError, ValueError):
             values = []
-        if len(values) == 2 or len(values) > 3:
+        two_ends = len(values) == 2 and isinstance(over[name], tuple)
+        if len(values) == 2 and not two_ends or len(values) > 3:
             steps = np.diff(values)
             if np.ptp(steps) > 1e-6 * np.abs(steps).max():
                 raise Error("over={%r: ...}: the values have to be equally spaced" % name)
