@@ -40,11 +40,13 @@ constexpr Eigen::Index few_rows = 6;
 /// out += factor a b, a of N x N.
 template <int N>
 void add_product(double factor, const MatrixXd& a, const MatrixXd& b, MatrixXd& out) {
-  for (Eigen::Index j = 0; j < b.cols(); ++j)
-    for (int k = 0; k < N; ++k) {
-      const double share = factor * b(k, j);
-      for (int i = 0; i < N; ++i) out(i, j) += share * a(i, k);
-    }
+  for (Eigen::Index j = 0; j < b.cols(); ++j) {
+    Eigen::Map<Eigen::Matrix<double, N, 1>> column(out.col(j).data());
+    Eigen::Matrix<double, N, 1> sum = column;
+    for (int k = 0; k < N; ++k)
+      sum += factor * b(k, j) * Eigen::Map<const Eigen::Matrix<double, N, 1>>(a.col(k).data());
+    column = sum;
+  }
 }
 
 /// The same of any size. Of few rows Eigen's product takes longer than the arithmetic.

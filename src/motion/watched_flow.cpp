@@ -158,19 +158,22 @@ std::optional<double> EventWatch::fall(Watched& watched, double end, double h, d
 
 /// Steps of an integration follow the states, and an event function may change faster: h at two places inside is
 /// compared with the cubic that has h and h_x f at both ends. In the middle alone a wave about it would agree.
-bool EventWatch::is_resolved(std::size_t i, double time, const DenseOutput& state) const {
+bool EventWatch::is_resolved(double time, const DenseOutput& state) const {
   constexpr double alike = 0.01;
-  const Watched& watched = events_[i];
-  const double length = time - time_, h = now_[i], rate = now_[events_.size() + i];
+  const double length = time - time_;
   for (const double s : {0.3, 0.7}) {
     const double rest = 1.0 - s;
-    const double expected = rest * rest * ((1.0 + 2.0 * s) * watched.h + s * length * watched.rate) +
-                            s * s * ((1.0 + 2.0 * rest) * h - rest * length * rate);
     const double* const inside = state(time_ + s * length);
-    const double found = value(watched.event, inside);
-    const double largest = std::max({std::abs(watched.h), std::abs(h), std::abs(found)});
-    if (!std::isfinite(found) || std::abs(found - expected) <= alike * largest) continue;
-    if (!(largest <= watched.tolerance * scale(watched.event, inside))) return false;
+    for (std::size_t i = 0; i < events_.size(); ++i) {
+      const Watched& watched = events_[i];
+      const double h = now_[i], rate = now_[events_.size() + i];
+      const double expected = rest * rest * ((1.0 + 2.0 * s) * watched.h + s * length * watched.rate) +
+                              s * s * ((1.0 + 2.0 * rest) * h - rest * length * rate);
+      const double found = value(watched.event, inside);
+      const double largest = std::max({std::abs(watched.h), std::abs(h), std::abs(found)});
+      if (!std::isfinite(found) || std::abs(found - expected) <= alike * largest) continue;
+      if (!(largest <= watched.tolerance * scale(watched.event, inside))) return false;
+    }
   }
   return true;
 }
@@ -185,9 +188,7 @@ double EventWatch::resolved_until(double time, const DenseOutput& state) {
   double until = time;
   for (int halving = 0; halving <= most_halvings; ++halving, until = time_ + 0.5 * (until - time_)) {
     roots(state(until), now_.data());
-    bool is_resolved = true;
-    for (std::size_t i = 0; is_resolved && i < events_.size(); ++i) is_resolved = this->is_resolved(i, until, state);
-    if (!is_resolved) continue;
+    if (!is_resolved(until, state)) continue;
     resolved_ = halving > 0 ? until - time_ : std::max(resolved_, until - time_);
     return until;
   }

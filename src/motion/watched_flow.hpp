@@ -114,7 +114,7 @@ class EventWatch {
   /// When this event falls in (time_, end], where its h and rate are now those given; updates its readiness.
   std::optional<double> fall(Watched& watched, double end, double h, double rate, bool is_minimum,
                              const DenseOutput& state);
-  bool is_resolved(std::size_t i, double time, const DenseOutput& state) const;
+  bool is_resolved(double time, const DenseOutput& state) const;
   double resolved_until(double time, const DenseOutput& state);
   std::optional<Fall> look_until(double time, const DenseOutput& state, const int* is_root);
   void look_again_from(double time, const DenseOutput& state);

@@ -83,13 +83,13 @@ class SmallMatrix {
   explicit SmallMatrix(std::vector<double> units)
       : size_(units.size()), units_(std::move(units)), entries_(size_ * size_), pivots_(size_) {}
 
-  double& operator()(std::size_t row, std::size_t column) { return entries_[row * size_ + column]; }
+  double& operator()(std::size_t row, std::size_t column) { return entries_[column * size_ + row]; }
 
-  /// False where it is singular.
+  /// False where it is singular. Of the rows of a flight's interval few columns beyond their own are not zero.
   bool factor() {
     auto& m = *this;
-    for (std::size_t i = 0; i < size_; ++i)
-      for (std::size_t j = 0; j < size_; ++j) m(i, j) *= units_[j] / units_[i];
+    for (std::size_t j = 0; j < size_; ++j)
+      for (std::size_t i = 0; i < size_; ++i) m(i, j) *= units_[j] / units_[i];
     for (std::size_t k = 0; k < size_; ++k) {
       std::size_t pivot = k;
       for (std::size_t i = k + 1; i < size_; ++i)
@@ -97,10 +97,10 @@ class SmallMatrix {
       if (!(std::fabs(m(pivot, k)) > 0.0)) return false;
       pivots_[k] = pivot;
       for (std::size_t j = 0; j < size_ && pivot != k; ++j) std::swap(m(k, j), m(pivot, j));
-      for (std::size_t i = k + 1; i < size_; ++i) {
-        const double factor = m(i, k) /= m(k, k);
-        for (std::size_t j = k + 1; j < size_ && factor != 0.0; ++j) m(i, j) -= factor * m(k, j);
-      }
+      for (std::size_t i = k + 1; i < size_; ++i) m(i, k) /= m(k, k);
+      for (std::size_t j = k + 1; j < size_; ++j)
+        if (const double entry = m(k, j); entry != 0.0)
+          for (std::size_t i = k + 1; i < size_; ++i) m(i, j) -= m(i, k) * entry;
     }
     return true;
   }
@@ -108,7 +108,7 @@ class SmallMatrix {
   /// The factors are those of numbers; what is solved for may have derivatives.
   template <class T>
   void solve(std::vector<T>& r) const {
-    const auto m = [this](std::size_t i, std::size_t j) { return entries_[i * size_ + j]; };
+    const auto m = [this](std::size_t i, std::size_t j) { return entries_[j * size_ + i]; };
     for (std::size_t k = 0; k < size_; ++k) r[k] = r[k] / units_[k];
     for (std::size_t k = 0; k < size_; ++k) std::swap(r[k], r[pivots_[k]]);
     for (std::size_t k = 0; k < size_; ++k)

@@ -415,6 +415,7 @@ class ProblemTable {
     Numbers load(std::ptrdiff_t k) const {
       const double* const from = begin + k * number_step;
       if constexpr (has_lanes) {
+        if (held == 1) return Lanes(*from);
         if (held == Lanes::count && point_step == 1) return Lanes::from(from);
         const auto of_lane = [&](int l) { return from[(l < held ? l : held - 1) * point_step]; };
         return Lanes(of_lane(0), of_lane(1), of_lane(2), of_lane(3));
@@ -425,6 +426,10 @@ class ProblemTable {
     void store(std::ptrdiff_t k, const Numbers& numbers) const {
       D* const to = begin + k * number_step;
       if constexpr (has_lanes) {
+        if (held == 1) {
+          *to = numbers.lane(0);
+          return;
+        }
         if (held == Lanes::count && point_step == 1) return numbers.to(to);
         numbers.scatter(to, point_step, held);
       } else {
