@@ -33,6 +33,14 @@ double first_lane(const Dual<N, B>& a) {
   return first_lane(a.value);
 }
 
+/// Gives a number another value; derivatives stay as they are.
+inline void set_number(double& a, double value) { a = value; }
+inline void set_number(Lanes& a, double value) { a = value; }
+template <int N, class B>
+void set_number(Dual<N, B>& a, double value) {
+  set_number(a.value, value);
+}
+
 /// For the impacts of a chatter mode. All functions are for numbers T, double or dual.
 template <class Problem>
 class ImpactFlights {
@@ -199,7 +207,10 @@ class ImpactFlights {
       for (int k = 0; k < derivative_depth<T>; ++k) {
         Flight<T> step = residual(solved->rule, y, par, flight);
         matrix.solve(step);
-        for (std::size_t i = 0; i < flight.size(); ++i) flight[i] -= step[i];
+        for (std::size_t i = 0; i < flight.size(); ++i) {
+          flight[i] -= step[i];
+          set_number(flight[i], solved->flight[i]);  // whoever asks for derivatives gets the same value
+        }
       }
     }
     x = y;
