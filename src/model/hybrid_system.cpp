@@ -136,6 +136,14 @@ const tchat_chatter* HybridSystem::chatter_of_impact(const IndexVector& index) c
   return nullptr;
 }
 
+bool HybridSystem::comes_before_limit(const Signature& signature, std::size_t at) const {
+  const tchat_chatter* const mode = chatter_of_impact(signature[at]);
+  std::size_t next = at;
+  do next = (next + 1) % signature.size();
+  while (mode != nullptr && next != at && signature[next] == signature[at]);
+  return mode != nullptr && signature[next] == IndexVector{mode->field, mode->event, mode->limit};
+}
+
 bool HybridSystem::is_made_by_chatter(FunctionKind kind, int index) const {
   const std::span modes(table_->chatter, static_cast<std::size_t>(table_->chatter_modes));
   return std::any_of(modes.begin(), modes.end(), [&](const tchat_chatter& mode) {

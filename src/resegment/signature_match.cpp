@@ -288,22 +288,13 @@ struct LimitPart {
   std::size_t impacts = 0;
 };
 
-/// Is this segment an impact that others follow up to their limit?
-bool comes_before_limit(const HybridSystem& system, const Signature& signature, std::size_t at) {
-  const tchat_chatter* const mode = system.chatter_of_impact(signature[at]);
-  std::size_t next = at;
-  do next = (next + 1) % signature.size();
-  while (mode != nullptr && next != at && signature[next] == signature[at]);
-  return mode != nullptr && signature[next] == IndexVector{mode->field, mode->event, mode->limit};
-}
-
 std::vector<LimitPart> parts_of(const HybridSystem& system, const Signature& signature) {
   std::vector<LimitPart> parts;
   const std::size_t m = signature.size();
   for (std::size_t at = 0; at < m; ++at) {
-    if (comes_before_limit(system, signature, at)) continue;
+    if (system.comes_before_limit(signature, at)) continue;
     parts.push_back({at});
-    while (parts.back().impacts < m && comes_before_limit(system, signature, (at + m - parts.back().impacts - 1) % m))
+    while (parts.back().impacts < m && system.comes_before_limit(signature, (at + m - parts.back().impacts - 1) % m))
       ++parts.back().impacts;
   }
   return parts;

@@ -31,7 +31,7 @@ constexpr std::size_t most_compared = 1000;
 bool repeats(const AttractorSample& sample) { return repeats(sample.kind); }
 
 ComparedOrbit cuts_of(const AttractorSample& sample) {
-  return {sample.signature, sample.identity, sample.sizes, {}, {}, sample.period};
+  return {sample.compared_signature(), sample.identity, sample.sizes, {}, {}, sample.period};
 }
 
 VectorXd sizes_of(const AttractorSample& a, const AttractorSample& b) {
@@ -45,13 +45,14 @@ double largest_in(const VectorXd& sizes, const MatrixXd& differences) {
 
 /// Of two turns of one orbit a sweep sees one.
 double distance_of_orbits(const AttractorSample& a, const AttractorSample& b) {
-  return a.signature == b.signature ? compare_cuts(cuts_of(a), cuts_of(b)).distance : infinite_distance;
+  return a.compared_signature() == b.compared_signature() ? compare_cuts(cuts_of(a), cuts_of(b)).distance
+                                                          : infinite_distance;
 }
 
 /// States of b turned so that they belong to those of a: a signature may repeat itself within a period. Empty when the
 /// signatures differ.
 MatrixXd aligned(const AttractorSample& a, const AttractorSample& b) {
-  if (a.signature != b.signature) return {};
+  if (a.compared_signature() != b.compared_signature()) return {};
   const CutComparison comparison = compare_cuts(cuts_of(a), cuts_of(b));
   if (!std::isfinite(comparison.distance)) return {};
   MatrixXd states(b.identity.rows(), b.identity.cols());
@@ -204,7 +205,7 @@ class Numberer {
     for (std::size_t r = 0; r < records_.size(); ++r) {
       const AttractorSample& at = sample(r);
       if (!counts(r)) continue;
-      int& number = numbers[{at.kind, at.signature}];
+      int& number = numbers[{at.kind, at.compared_signature()}];
       if (number == 0) number = new_number(r);
       numbers_.of_record[r] = number;
     }

@@ -5,7 +5,8 @@
 /// that agree). From one value of a swept parameter to the next an attractor goes on in the nearest one of the same
 /// kind and signature that is not further away than a tenth of its range, or up to its range where the states of three
 /// neighbouring values lie on a line, as those of a branch do. Over two parameters a number stands for a
-/// kind and signature.
+/// kind and signature. Impacts up to a limit (tchat/chatter.hpp), of which there may be more or fewer on one orbit, are
+/// left out of all that.
 #pragma once
 
 #include <vector>

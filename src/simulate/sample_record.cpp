@@ -16,6 +16,7 @@ namespace {
 /// Before what a line has only if it was asked for; no message begins with it.
 constexpr const char* largest_values = "@max";
 constexpr const char* events_seen = "@events";
+constexpr const char* chatter_left_out = "@without_chatter";
 
 /// FNV-1a: tells a line that was cut or damaged.
 std::uint64_t line_hash(std::string_view text) {
@@ -170,6 +171,10 @@ std::string record_line(const SampleRecord& record) {
     line.word(events_seen);
     line.integer(sample.events);
   }
+  if (!sample.without_chatter.empty()) {
+    line.word(chatter_left_out);
+    line.index_vectors(sample.without_chatter);
+  }
   return line.finished(one_line(sample.message));
 }
 
@@ -205,6 +210,10 @@ std::optional<SampleRecord> read_record(const std::string& line) {
   if (reader.rest().starts_with(std::string(events_seen) + ' ')) {
     reader.word();
     sample.events = reader.integer();
+  }
+  if (reader.rest().starts_with(std::string(chatter_left_out) + ' ')) {
+    reader.word();
+    sample.without_chatter = reader.index_vectors();
   }
   sample.message = reader.rest();
   if (!reader.ok() || !kind) return std::nullopt;

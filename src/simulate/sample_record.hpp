@@ -50,13 +50,17 @@ struct AttractorSample {
   /// too. Empty: not asked for, or no attractor.
   Eigen::MatrixXd largest;
   /// Section states by which equal attractors are known; periodic: one period, of every event in the order of
-  /// `signature`; at rest the equilibrium. n x (number of them)
+  /// compared_signature(); at rest the equilibrium. n x (number of them)
   Eigen::MatrixXd identity;
+  /// Without impacts up to a limit, of which there may be more or fewer on one orbit; empty: `signature`.
+  Signature without_chatter;
   Eigen::VectorXd sizes;  ///< of differences of each state over the attractor, at rest the sizes of the states; n
   MotionState last;       ///< to go on from at a neighbouring value; x is empty where there is nothing to go on from
   long events = 0;        ///< over which it was seen, from the start to the verdict; 0: not told
   int known = 0;          ///< number, from 1, of the known attractor that has captured it, which is then all there is
   std::string message;    ///< why it has not settled, one line; empty when there is nothing to say
+
+  const Signature& compared_signature() const { return without_chatter.empty() ? signature : without_chatter; }
 };
 
 /// Thrown where a value has been given up because of a signal.

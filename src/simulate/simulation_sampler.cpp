@@ -294,31 +294,32 @@ class SampleRun {
 
   void finish(const HybridSimulation& simulation) {
     if (kept_.empty()) return;
-    rotate_to_smallest();
+    if (repeats(sample_.kind)) rotate_to_smallest(kept_);
     measure_sizes(simulation);
     if (repeats(sample_.kind)) describe_period();
+    describe_identity();
     describe_states();
     choose_hand_over();
   }
 
   /// The turn begins where its sequence of index vectors is least; among equal ones where the state is.
-  void rotate_to_smallest() {
-    if (!repeats(sample_.kind)) return;
-    const auto m = kept_.size();
+  template <class Turn>
+  static void rotate_to_smallest(Turn& turn) {
+    const auto m = turn.size();
     const auto is_less = [&](std::size_t a, std::size_t b) {
       for (std::size_t s = 0; s < m; ++s) {
-        const IndexVector& u = kept_[(a + s) % m].index;
-        const IndexVector& v = kept_[(b + s) % m].index;
+        const IndexVector& u = turn[(a + s) % m].index;
+        const IndexVector& v = turn[(b + s) % m].index;
         if (u != v) return u < v;
       }
-      const VectorXd& x = kept_[a].after;
-      const VectorXd& y = kept_[b].after;
+      const VectorXd& x = turn[a].after;
+      const VectorXd& y = turn[b].after;
       return std::lexicographical_compare(x.begin(), x.end(), y.begin(), y.end());
     };
     std::size_t least = 0;
     for (std::size_t s = 1; s < m; ++s)
       if (is_less(s, least)) least = s;
-    std::rotate(kept_.begin(), kept_.begin() + static_cast<std::ptrdiff_t>(least), kept_.end());
+    std::rotate(turn.begin(), turn.begin() + static_cast<std::ptrdiff_t>(least), turn.end());
   }
 
   void measure_sizes(const HybridSimulation& simulation) {
@@ -390,16 +391,36 @@ class SampleRun {
     }
   }
 
-  void describe_states() {
-    const Eigen::Index n = system_.dimension();
+  /// Without impacts up to a limit, and that itself, which comes after more of them or fewer.
+  std::vector<SimulatedSegment> compared_segments() const {
+    const auto is_left_out = [&](std::size_t s) {
+      return !sample_.signature.empty() && (system_.comes_before_limit(sample_.signature, s) ||
+                                            system_.chatter_with_limit(sample_.signature[s].jump) != nullptr);
+    };
+    std::vector<SimulatedSegment> segments;
+    for (std::size_t s = 0; s < kept_.size(); ++s)
+      if (!is_left_out(s)) segments.push_back(kept_[s]);
+    return segments;
+  }
+
+  void describe_identity() {
+    std::vector<SimulatedSegment> segments = compared_segments();
+    if (segments.size() < kept_.size()) {
+      rotate_to_smallest(segments);
+      for (const SimulatedSegment& segment : segments) sample_.without_chatter.push_back(segment.index);
+    }
     std::vector<Dot> ends;
-    for (const SimulatedSegment& segment : kept_)
+    for (const SimulatedSegment& segment : segments)
       if (segment.ended_by == SegmentEnd::event && ends.size() < identity_points)
         ends.push_back({segment.end_time(), segment.index.event, segment.after});
-    sample_.identity = columns_of(ends, n);
+    sample_.identity = columns_of(ends, system_.dimension());
     if (sample_.kind == AttractorKind::rest) sample_.identity = rest_ ? *rest_ : kept_.back().end;
     // Attractors are not told apart by states that nothing depends on.
     for (const Eigen::Index k : search_.ignorable()) sample_.identity.row(k).setZero();
+  }
+
+  void describe_states() {
+    const Eigen::Index n = system_.dimension();
     std::vector<Dot> dots, contacts;
     for (const SimulatedSegment& segment : kept_) {
       add_dots(segment, dots);

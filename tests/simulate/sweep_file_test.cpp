@@ -146,6 +146,7 @@ TEST_CASE("a record of a journal is read back to the last bit, and a damaged one
   sample.section_penetrations = Eigen::VectorXd::Random(4);
   sample.identity = Eigen::MatrixXd::Random(3, 2);
   if (has_largest) sample.largest = Eigen::MatrixXd::Random(3, 4);
+  if (has_largest) sample.without_chatter = {{2, 1, 1}};
   sample.sizes = Eigen::VectorXd::Random(3);
   sample.last = {Eigen::VectorXd::Random(3), {{1, 1, 1}, {1, 2, 2}}};
   sample.known = 3;
@@ -168,6 +169,7 @@ TEST_CASE("a record of a journal is read back to the last bit, and a damaged one
   CHECK(read->sample.section_penetrations == sample.section_penetrations);
   CHECK(read->sample.identity == sample.identity);
   CHECK(read->sample.largest == sample.largest);
+  CHECK(read->sample.without_chatter == sample.without_chatter);
   CHECK(read->sample.last.x == sample.last.x);
   CHECK(read->sample.last.watched == sample.last.watched);
   CHECK(read->sample.known == 3);
