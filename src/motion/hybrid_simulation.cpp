@@ -318,7 +318,18 @@ bool HybridSimulation::sticks_at_start(SimulatedSegment& segment) const {
   if (!contains(mode_.terminal_events(), last_.event) || contains(pending_, last_.event)) return false;
   const Surface at = surface(mode_.field(), last_.event, x_);
   const bool is_thrown_back_to_rest = last_rate_ < 0.0 && at.rate >= 1e-3 * last_rate_;
-  if (!at.is_near || at.rate > 0.0 || !(walls_.contains(last_.event) || is_thrown_back_to_rest)) return false;
+  const bool is_of_chatter = system_.chatter_of_impact(last_) != nullptr && last_rate_ < 0.0;
+  if (!at.is_near || at.rate > 0.0 || !(walls_.contains(last_.event) || is_thrown_back_to_rest || is_of_chatter))
+    return false;
+  if (is_of_chatter) {
+    stop(segment, SegmentEnd::sticks,
+         fmt::format(
+             "after jump {} ({}) the flow goes on through {} at once, at x = {}: restitution {:.3g}, and impacts "
+             "accumulate where that is between 0 and 1",
+             last_.jump, system_.function_name(FunctionKind::jump, last_.jump),
+             system_.function_name(FunctionKind::event, last_.event), state_text(x_), -at.rate / last_rate_));
+    return true;
+  }
   stop(segment, SegmentEnd::sticks,
        fmt::format("after the jump the flow goes on through {} at once, at x = {}: the contact lasts, and the problem "
                    "has no mode for that",
