@@ -102,8 +102,31 @@ TEST_CASE("a branch of orbits with complete chatter ends where chatter becomes i
     CHECK(std::abs(last.values.back() - 2.0 * std::acos(-1.0)) < 1e-9);
     // As the model's own rules have it, all orbits are admissible.
     CHECK_FALSE(contains(outcome.out, "inadmissible"));
+    // The limit has no derivative where chatter becomes incomplete, and there are no multipliers to compare.
+    const Outcome verified = workspace.succeed("verify q.locked -p ball");
+    CHECK(contains(verified.out, "multipliers: not determined"));
+    CHECK(contains(verified.out, "2 labels agree"));
   }
-  CHECK(workspace.tchat("verify q.locked -p ball").status == 0);
+}
+
+TEST_CASE("a sweep gives orbits with chatter one number however many impacts come before their limit") {
+  const Workspace workspace;
+  workspace.write("ball.tch", ball);
+  const Outcome outcome = workspace.succeed("sweep ball --over Gamma=1.05:1.55:21 -o swept");
+  INFO(outcome.text());
+  CHECK(contains(outcome.out, "21 times, first at Gamma = 1.05"));
+  CHECK_FALSE(contains(outcome.out, "Attractor 2"));
+}
+
+TEST_CASE("impacts that do not throw the motion back end a simulation with their restitution") {
+  const Workspace workspace;
+  workspace.write("ball.tch", ball);
+  for (const char* r : {"0", "-0.3"}) {
+    const Outcome outcome = workspace.tchat(std::string("simulate ball PAR(r)=") + r + " --state 1.4,0,0,1.1");
+    INFO(outcome.text());
+    CHECK(contains(outcome.out, std::string("goes on through landing at once")));
+    CHECK(contains(outcome.out, std::string("restitution ") + r + ","));
+  }
 }
 
 TEST_CASE("a simulation says that chatter is not complete where impacts at falling intervals end in a longer one") {
