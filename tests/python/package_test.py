@@ -308,6 +308,8 @@ class Studies(unittest.TestCase):
         self.assertLess(np.min(np.abs(label.multipliers + 1)), 1e-5)
         self.assertEqual(label["PERIOD"], label.period)
         self.assertRaisesRegex(tchat.Error, "no 'PERIODS'", lambda: label["PERIODS"])
+        self.assertIn("alpha", label)
+        self.assertNotIn("PERIODS", label)
         self.assertRaisesRegex(tchat.Error, "p.-h|./-h", tchat.load, "-h")
 
     def test_multipliers_keep_their_columns(self):

@@ -292,7 +292,17 @@ class Label:
         if name in self.branch and self._place() is not None:
             return self.branch[name][self._place()]
         raise Error("%s, %s: no %r; there are %s" %
-                    (self._path, self.name, name, ", ".join([*self._row, *self.branch.columns])))
+                    (self._path, self.name, name, ", ".join(self._names())))
+
+    def __contains__(self, name):
+        return name == "PERIOD" or name in self._names()
+
+    def __iter__(self):
+        return iter(self._names())
+
+    def _names(self):
+        """Of the table of labels, then further columns of the branch."""
+        return list(dict.fromkeys([*self._row, *self.branch.columns]))
 
     def _place(self):
         """The row of its point in the branch."""
