@@ -414,7 +414,7 @@ class SolutionReader {
       return static_cast<int>(value);
     };
     UserPointKind kind;
-    kind.kind = whole(0.0, UserPointKind::rule, "kind");
+    kind.kind = whole(0.0, UserPointKind::chatter, "kind");
     kind.segment = whole(0.0, max_segments, "segment");
     kind.index =
         whole(kind.kind == UserPointKind::other_type ? -99.0 : -1.0, 1e9, "index");  // type numbers: two digits

@@ -353,7 +353,7 @@ Commands next_commands(const NextStart& start, const RunSettings& settings, cons
     return {resegmentation(start, output, target, names.start),
             words_of({run_from_files(problem, names.start), {"-o", names.branch_after_start}})};
   }
-  if (start.kind.kind == UserPointKind::rule)
+  if (start.kind.kind == UserPointKind::rule || start.kind.kind == UserPointKind::chatter)
     return {words_of({{"simulate"},
                       problem_words(problem),
                       {"-s", output, fmt::format("IRS={}", start.label), "--dat", names.branch}})};

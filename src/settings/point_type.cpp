@@ -45,6 +45,10 @@ constexpr auto table = std::to_array<PointTypeFacts>({
      "the rules of the model change: beyond it another jump follows the end of a segment; the branch ends there unless "
      "GRSTOP=0",
      PointSymbol::circle, false, true, false, false},
+    {"GR", -4, UserPointKind::chatter,
+     "chatter becomes incomplete: on one side the impacts of a segment do not accumulate; the branch ends there unless "
+     "GRSTOP=0",
+     PointSymbol::circle, false, true, false, false},
     {"BE", -4, UserPointKind::boundary_equilibrium,
      "boundary equilibrium: a monitored event function is zero at an equilibrium; the branch ends there unless "
      "GRSTOP=0 or the function rises",
@@ -264,6 +268,8 @@ std::string description(const UserPointKind& kind, const std::string& parameter)
     case UserPointKind::rule:
       return fmt::format("the rules of the model change at the end of segment {}, event function {}", kind.segment,
                          kind.index);
+    case UserPointKind::chatter:
+      return fmt::format("chatter becomes incomplete, segment {}, event function {}", kind.segment, kind.index);
     case UserPointKind::other_type:
       return type_name(kind.index);
     default:

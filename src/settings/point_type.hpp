@@ -65,7 +65,8 @@ struct UserPointKind {
     other_type = 6,  ///< a point that has a type number of its own, beside the label's
     boundary_equilibrium = 7,
     extremum = 9,  ///< 8 marks meshes of segments in files
-    rule = 10      ///< by the problem's rules another segment follows; the last one that files may have
+    rule = 10,     ///< by the problem's rules another segment follows
+    chatter = 11   ///< impacts cease to accumulate; the last one that files may have
   };
   int kind = none;
   int segment = 0;  ///< from 1

@@ -123,9 +123,9 @@ SpecialPoint RuleTest::classify(const TestedPoint& point, bool rising) const {
                          "({}) ends segment {}, on the other side it is another one",
                          segment_ + 1, event, to.jump, system.function_name(FunctionKind::jump, to.jump), next + 1);
   return {PointType::user,
-          {UserPointKind::rule, segment_ + 1, from.event, 1.0},
-          stop_ && !rising,
-          fmt::format("{}, {}", change, state_text(system, point.orbit, point.orbit.end(segment_)))};
+          ends_chatter ? UserPointKind{UserPointKind::chatter, next + 1, from.event, 1.0}
+                       : UserPointKind{UserPointKind::rule, segment_ + 1, from.event, 1.0},
+          stop_ && !rising, fmt::format("{}, {}", change, state_text(system, point.orbit, point.orbit.end(segment_)))};
 }
 
 namespace {

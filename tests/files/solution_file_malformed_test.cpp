@@ -105,7 +105,7 @@ std::vector<Malformed> corpus() {
       {"ICP a real number", with_line(good, 7, "    1 61.5"), {"q.x:7", "'61.5' is not the number of a parameter"}},
       {"ICP zero", with_line(good, 7, "    0   61"), {"q.x:7", "'0'", "from 1 to 104"}},
       {"ICP beyond PAR", with_line(good, 7, "    1  999"), {"q.x:7", "'999'"}},
-      {"kind unknown", with_kind({11, 0, 0, 0}), {"q.x:28", "11 as kind", "UZ"}},
+      {"kind unknown", with_kind({12, 0, 0, 0}), {"q.x:28", "12 as kind", "UZ"}},
       {"meshes of segments in place of a kind", with_kind({8, 0, 0, 0}), {"q.x:28", "8 as kind", "UZ"}},
       {"kind not whole", with_kind({1.5, 0, 0, 0}), {"1.5 as kind"}},
       {"segment negative", with_kind({2, -1, 1, 0}), {"-1 as segment"}},
