@@ -202,7 +202,7 @@ ComparedOrbit compared_rest(const HybridSystem& system, int field, const VectorX
   return {{IndexVector{}}, x, sizes.sizes(), {}, {}, NAN};
 }
 
-/// Differences of states that nothing depends on count for nothing.
+/// Differences of states that nothing depends on count for nothing, and the number of impacts up to a limit neither.
 std::optional<ComparedOrbit> compared_orbit(const HybridSystem& system, const LabelledSolution& solution,
                                             const Signature& signature) {
   if (!is_comparable(solution)) return std::nullopt;
@@ -238,7 +238,15 @@ std::optional<ComparedOrbit> compared_orbit(const HybridSystem& system, const La
   rounding.flip();
   orbit.sizes = sizes_of_differences(extremes.rowwise().minCoeff(), extremes.rowwise().maxCoeff(), rounding,
                                      ignorable_states(system, points, par));
-  return orbit;
+  const std::vector<std::size_t> left = system.without_chatter(signature);
+  if (std::ssize(left) == m) return orbit;
+  ComparedOrbit common{{}, MatrixXd(solution.dimension, std::ssize(left)), orbit.sizes, {}, orbit.tau, orbit.period};
+  for (const std::size_t s : left) {
+    common.ends.col(std::ssize(common.signature)) = orbit.ends.col(static_cast<Index>(s));
+    common.signature.push_back(signature[s]);
+    common.segments.push_back(orbit.segments[s]);
+  }
+  return common;
 }
 
 LabelledSolution read_label_of(const std::string& path, int label) {
@@ -450,7 +458,7 @@ bool is_followed(const SweepAttractor& attractor) {
   return attractor.kind == AttractorKind::periodic || attractor.kind == AttractorKind::rest;
 }
 
-std::vector<std::string> branches_of(const OrbitCatalogue& catalogue, const Sweep& sweep,
+std::vector<std::string> branches_of(const HybridSystem& system, const OrbitCatalogue& catalogue, const Sweep& sweep,
                                      const SweptAttractor& sample) {
   if (sample.attractor->kind == AttractorKind::rest) {
     const auto state = sweep.samples.numbers_of(sample);
@@ -458,16 +466,17 @@ std::vector<std::string> branches_of(const OrbitCatalogue& catalogue, const Swee
     return branch.empty() ? std::vector<std::string>{} : std::vector<std::string>{branch};
   }
   const Signature word = sweep.is_cut ? Signature{{1, 0, 0}} : signature_of(*sample.attractor);
-  return catalogue.branches_with(word, sample.value, sample.period, sweep.samples.values_of(sample, sweep.monitors));
+  return catalogue.branches_with(common_word(system, word), sample.value, sample.period,
+                                 sweep.samples.values_of(sample, sweep.monitors));
 }
 
-void measure_coverage(const Sweep& sweep, const OrbitCatalogue& catalogue, const ExplorationCommands& commands,
-                      ExploredDiagram& diagram) {
+void measure_coverage(const HybridSystem& system, const Sweep& sweep, const OrbitCatalogue& catalogue,
+                      const ExplorationCommands& commands, ExploredDiagram& diagram) {
   count_kinds(sweep, diagram);
   std::map<int, UnexplainedAttractor> missing;
   sweep.samples.for_each([&](const SweptAttractor& sample) {
     const SweepAttractor& known = *sample.attractor;
-    const std::size_t branches = is_followed(known) ? branches_of(catalogue, sweep, sample).size() : 0;
+    const std::size_t branches = is_followed(known) ? branches_of(system, catalogue, sweep, sample).size() : 0;
     if (branches > 1) ++diagram.on_several;
     if (branches > 0) {
       ++diagram.on_branches;

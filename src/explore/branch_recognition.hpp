@@ -129,10 +129,11 @@ bool is_followed(const SweepAttractor& attractor);
 
 /// The branches that the attractor of a value lies on: by its state where it rests, else by signature, period and
 /// largest values, which several branches may share.
-std::vector<std::string> branches_of(const OrbitCatalogue& catalogue, const Sweep& sweep, const SweptAttractor& sample);
+std::vector<std::string> branches_of(const HybridSystem& system, const OrbitCatalogue& catalogue, const Sweep& sweep,
+                                     const SweptAttractor& sample);
 
 /// Adds the sweep's counts to the diagram, and its attractors on no branch.
-void measure_coverage(const Sweep& sweep, const OrbitCatalogue& catalogue, const ExplorationCommands& commands,
-                      ExploredDiagram& diagram);
+void measure_coverage(const HybridSystem& system, const Sweep& sweep, const OrbitCatalogue& catalogue,
+                      const ExplorationCommands& commands, ExploredDiagram& diagram);
 
 }  // namespace tchat

@@ -194,7 +194,8 @@ class Explorer {
       std::set<int> numbers;
       sweep.samples.for_each([&](const SweptAttractor& sample) {
         const SweepAttractor& attractor = *sample.attractor;
-        if (!is_followed(attractor) || is_too_long(attractor) || !branches_of(catalogue_, sweep, sample).empty())
+        if (!is_followed(attractor) || is_too_long(attractor) ||
+            !branches_of(loaded_.library->system(), catalogue_, sweep, sample).empty())
           return;
         const std::string name = fmt::format("{}{}", sweep.letter, attractor.number);
         if (!numbers.insert(attractor.number).second || !tried_.insert({name, sample.value}).second) return;
@@ -369,7 +370,8 @@ class Explorer {
       set_outcome(candidate, "", "no orbit of the range begins there");
       return false;
     }
-    std::vector<CataloguedSection> sections = catalogued_sections(branch.name, points, commands_.monitors());
+    std::vector<CataloguedSection> sections =
+        catalogued_sections(loaded_.library->system(), branch.name, points, commands_.monitors());
     const std::optional<std::vector<KnownBranch>> found =
         known_branches(sections, is_switch_in_both_directions(candidate));
     if (!found) return interrupt(candidate);
@@ -498,7 +500,8 @@ class Explorer {
   }
 
   void measure_sweeps() {
-    for (const Sweep& sweep : sweeps_) measure_coverage(sweep, catalogue_, commands_, diagram_);
+    for (const Sweep& sweep : sweeps_)
+      measure_coverage(loaded_.library->system(), sweep, catalogue_, commands_, diagram_);
     for (UnexplainedAttractor& one : diagram_.unexplained)
       if (const auto met = met_.find(one.attractor); met != met_.end()) one.leads_to = met->second;
   }

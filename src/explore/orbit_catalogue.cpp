@@ -44,8 +44,12 @@ VectorXd with_period_of(const InterpolatedPoint& known, VectorXd numbers) {
   return numbers;
 }
 
-bool are_near(const InterpolatedPoint& orbit, const VectorXd& numbers) {
-  constexpr double errors = 5.0, share = level::five_digits;
+/// Share of the largest number by which orbits may differ whose limits sum up more impacts or fewer.
+constexpr double by_summed_impacts = 0.1;
+
+bool are_near(const InterpolatedPoint& orbit, const VectorXd& numbers, bool has_other_impacts) {
+  constexpr double errors = 5.0;
+  const double share = has_other_impacts ? by_summed_impacts : level::five_digits;
   const double size = numbers.cwiseAbs().maxCoeff();
   return ((orbit.numbers - numbers).array().abs() <= errors * orbit.uncertainty.array() + share * size).all();
 }
@@ -75,8 +79,14 @@ bool about_agree(const InterpolatedPoint& orbit, const std::vector<double>& moni
 
 }  // namespace
 
-std::vector<CataloguedSection> catalogued_sections(const std::string& branch, const PointFile& file,
-                                                   const std::vector<std::string>& monitors) {
+PrimitiveWord common_word(const HybridSystem& system, const Signature& signature) {
+  Signature word;
+  for (const std::size_t s : system.without_chatter(signature)) word.push_back(signature[s]);
+  return primitive_word(word);
+}
+
+std::vector<CataloguedSection> catalogued_sections(const HybridSystem& system, const std::string& branch,
+                                                   const PointFile& file, const std::vector<std::string>& monitors) {
   std::vector<CataloguedSection> result;
   int number = 0;
   for (const PointSection& section : file.sections) {
@@ -92,7 +102,7 @@ std::vector<CataloguedSection> catalogued_sections(const std::string& branch, co
     one.branch = branch;
     one.number = number;
     one.own_signature = section.signature;
-    one.signature = primitive_word(section.signature);
+    one.signature = common_word(system, section.signature);
     one.rests = rests;
     one.numbers.resize(std::ssize(columns), std::ssize(section.rows));
     for (std::size_t r = 0; r < section.rows.size(); ++r) {
@@ -157,7 +167,9 @@ std::vector<BranchPlace> OrbitCatalogue::places_near(const std::string& branch, 
       if (!passes(known, i, parameter)) continue;
       const InterpolatedPoint orbit = interpolate(known.parameter, known.numbers, i, parameter);
       const VectorXd numbers = like.numbers.col(row);
-      if (are_near(orbit, like.rests ? numbers : with_period_of(orbit, numbers))) places.push_back({&known, i});
+      const bool has_other_impacts = known.has_chatter() && known.own_signature.size() != like.own_signature.size();
+      if (are_near(orbit, like.rests ? numbers : with_period_of(orbit, numbers), has_other_impacts))
+        places.push_back({&known, i});
     }
   }
   return places;
@@ -186,19 +198,19 @@ std::vector<std::string> OrbitCatalogue::branches_at(const CataloguedSection& li
   return branches;
 }
 
-std::vector<std::string> OrbitCatalogue::branches_with(const Signature& signature, double parameter, double period,
+std::vector<std::string> OrbitCatalogue::branches_with(const PrimitiveWord& signature, double parameter, double period,
                                                        const std::vector<double>& monitors) const {
-  const PrimitiveWord wanted = primitive_word(signature);
   std::vector<std::string> branches;
   for (const CataloguedSection& known : sections_) {
     if (known.rests) continue;
-    const bool is_cut_alike = known.signature.word == wanted.word;
+    const bool is_cut_alike = known.signature.word == signature.word;
     const std::vector<InterpolatedPoint> orbits = orbits_at(known, parameter);
     const bool has_one = std::any_of(orbits.begin(), orbits.end(), [&](const InterpolatedPoint& orbit) {
       const double time = orbit.numbers(0) * known.signature.repetitions;
       const double tolerance =
           2.0 * orbit.uncertainty(0) * known.signature.repetitions + level::five_digits * std::abs(period);
-      return std::abs(time - period) <= tolerance && about_agree(orbit, monitors, is_cut_alike ? coarse : fine);
+      const double share = !is_cut_alike ? fine : known.has_chatter() ? by_summed_impacts : coarse;
+      return std::abs(time - period) <= tolerance && about_agree(orbit, monitors, share);
     });
     if (has_one && std::find(branches.begin(), branches.end(), known.branch) == branches.end())
       branches.push_back(known.branch);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "files/point_file_reader.hpp"
+#include "model/hybrid_system.hpp"
 #include "motion/orbit_identity.hpp"
 
 namespace tchat {
@@ -22,7 +23,11 @@ struct CataloguedSection {
   std::string branch;
   int number = 1;           ///< of the section in its file
   Signature own_signature;  ///< as its orbits begin
-  PrimitiveWord signature;
+  PrimitiveWord signature;  ///< without impacts up to a limit
+  /// Are there any? Numbers have contact in place of those that the limit sums up.
+  bool has_chatter() const {
+    return own_signature.size() != signature.word.size() * static_cast<std::size_t>(signature.repetitions);
+  }
   std::vector<double> parameter;
   std::vector<int> labels;  ///< of each point; 0 without
   bool rests = false;
@@ -32,14 +37,17 @@ struct CataloguedSection {
 
 /// The sections of a p-file, whose columns have the names `monitors` and PERIOD, or those of states on branches of
 /// equilibria. Sections without these are left out.
-std::vector<CataloguedSection> catalogued_sections(const std::string& branch, const PointFile& file,
-                                                   const std::vector<std::string>& monitors);
+std::vector<CataloguedSection> catalogued_sections(const HybridSystem& system, const std::string& branch,
+                                                   const PointFile& file, const std::vector<std::string>& monitors);
 
 /// Where a branch has an orbit between two of its points.
 struct BranchPlace {
   const CataloguedSection* section = nullptr;
   Eigen::Index point = 0;  ///< the one before
 };
+
+/// What orbits of this signature, with more impacts or fewer before a limit, have in common.
+PrimitiveWord common_word(const HybridSystem& system, const Signature& signature);
 
 class OrbitCatalogue {
  public:
@@ -59,7 +67,7 @@ class OrbitCatalogue {
                                        Eigen::Index row) const;
   /// The branches with an orbit of this signature and period at the parameter value, whose monitors are about these
   /// (NaN: not known), each once.
-  std::vector<std::string> branches_with(const Signature& signature, double parameter, double period,
+  std::vector<std::string> branches_with(const PrimitiveWord& signature, double parameter, double period,
                                          const std::vector<double>& monitors) const;
   /// The branch with this equilibrium. `size`: of states.
   std::string branch_with_state(double parameter, const Eigen::VectorXd& state, double size) const;

@@ -144,6 +144,13 @@ bool HybridSystem::comes_before_limit(const Signature& signature, std::size_t at
   return mode != nullptr && signature[next] == IndexVector{mode->field, mode->event, mode->limit};
 }
 
+std::vector<std::size_t> HybridSystem::without_chatter(const Signature& signature) const {
+  std::vector<std::size_t> segments;
+  for (std::size_t s = 0; s < signature.size(); ++s)
+    if (!comes_before_limit(signature, s) && chatter_with_limit(signature[s].jump) == nullptr) segments.push_back(s);
+  return segments;
+}
+
 bool HybridSystem::is_made_by_chatter(FunctionKind kind, int index) const {
   const std::span modes(table_->chatter, static_cast<std::size_t>(table_->chatter_modes));
   return std::any_of(modes.begin(), modes.end(), [&](const tchat_chatter& mode) {

@@ -77,9 +77,11 @@ class HybridSystem {
   const tchat_chatter* chatter_with_limit(int jump) const;
   /// The one whose impacts are such events.
   const tchat_chatter* chatter_of_impact(const IndexVector& index) const;
-  /// Is this segment of a signature an impact that others follow up to their limit? How many there are makes no
-  /// difference to an orbit.
+  /// Is this segment of a signature an impact that others follow up to their limit?
   bool comes_before_limit(const Signature& signature, std::size_t at) const;
+  /// Those segments of a signature, from 0, that are neither such impacts nor that limit, of which an orbit may have
+  /// more or fewer.
+  std::vector<std::size_t> without_chatter(const Signature& signature) const;
   /// Is it the limit, the margin or the time of a chatter mode, for which impacts are computed, or its jump after
   /// contact?
   bool is_made_by_chatter(FunctionKind kind, int index) const;

@@ -391,21 +391,11 @@ class SampleRun {
     }
   }
 
-  /// Without impacts up to a limit, and that itself, which comes after more of them or fewer.
-  std::vector<SimulatedSegment> compared_segments() const {
-    const auto is_left_out = [&](std::size_t s) {
-      return !sample_.signature.empty() && (system_.comes_before_limit(sample_.signature, s) ||
-                                            system_.chatter_with_limit(sample_.signature[s].jump) != nullptr);
-    };
-    std::vector<SimulatedSegment> segments;
-    for (std::size_t s = 0; s < kept_.size(); ++s)
-      if (!is_left_out(s)) segments.push_back(kept_[s]);
-    return segments;
-  }
-
   void describe_identity() {
-    std::vector<SimulatedSegment> segments = compared_segments();
-    if (segments.size() < kept_.size()) {
+    std::vector<SimulatedSegment> segments(kept_.begin(), kept_.end());
+    if (const auto left = system_.without_chatter(sample_.signature); left.size() < sample_.signature.size()) {
+      segments.clear();
+      for (const std::size_t s : left) segments.push_back(kept_[s]);
       rotate_to_smallest(segments);
       for (const SimulatedSegment& segment : segments) sample_.without_chatter.push_back(segment.index);
     }

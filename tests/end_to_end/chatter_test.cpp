@@ -106,6 +106,7 @@ TEST_CASE("a branch of orbits with complete chatter ends where chatter becomes i
     const Outcome verified = workspace.succeed("verify q.locked -p ball");
     CHECK(contains(verified.out, "multipliers: not determined"));
     CHECK(contains(verified.out, "2 labels agree"));
+    CHECK(contains(workspace.succeed("labels q.locked --csv").out, "chatter becomes incomplete, segment"));
   }
 }
 
@@ -116,6 +117,19 @@ TEST_CASE("a sweep gives orbits with chatter one number however many impacts com
   INFO(outcome.text());
   CHECK(contains(outcome.out, "21 times, first at Gamma = 1.05"));
   CHECK_FALSE(contains(outcome.out, "Attractor 2"));
+}
+
+TEST_CASE("explore draws orbits with chatter once, beside those that it knows of the bouncing ball") {
+  const Workspace workspace;
+  workspace.write("ball.tch", ball);
+  const Outcome outcome = workspace.succeed("explore ball --over Gamma=1.02:1.58:29 -o diagram");
+  INFO(outcome.text());
+  // The orbit with one impact a period: LP at pi (1 - r) / (1 + r), PD where the square of Gamma is that of LP and of
+  // 2 (1 + r^2) / (1 + r)^2.
+  CHECK(contains(outcome.out, "3 branches. Coverage"));
+  CHECK(contains(outcome.out, "(100 %)"));
+  CHECK(contains(outcome.out, "at 1.047197551"));
+  CHECK(contains(outcome.out, "PD 2 at 1.526823701"));
 }
 
 TEST_CASE("impacts that do not throw the motion back end a simulation with their restitution") {
