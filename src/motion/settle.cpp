@@ -121,13 +121,18 @@ SimulationResult run_simulation(HybridSimulation& simulation, const SimulationPl
   SimulationResult result;
   MotionJudge judge(simulation, search, {!plan.has_length(), false});
   SeriesCounter series;
+  double since_impact = 0.0;  // sections may lie between impacts
   const Course course = settle(simulation, plan, [&](const SimulatedSegment& segment, bool is_transient) {
     if (!is_transient) {
       kept(segment);
       count_marks(segment, result);
       count_missed(simulation, segment, result);
     }
-    if (segment.ended_by == SegmentEnd::event) series.add(segment.index, segment.duration);
+    const HybridSystem& system = simulation.system();
+    since_impact += segment.duration;
+    if (segment.ended_by == SegmentEnd::event && (system.chatter_of_impact(segment.index) != nullptr ||
+                                                  system.chatter_with_limit(segment.index.jump) != nullptr))
+      series.add(segment.index, std::exchange(since_impact, 0.0));
     result.last = segment;
     result.end = judge.look(simulation, segment, is_transient);
     return result.end != MotionEnd::open;

@@ -122,7 +122,7 @@ TEST_CASE("a sweep gives orbits with chatter one number however many impacts com
 TEST_CASE("explore draws orbits with chatter once, beside those that it knows of the bouncing ball") {
   const Workspace workspace;
   workspace.write("ball.tch", ball);
-  const Outcome outcome = workspace.succeed("explore ball --over Gamma=1.02:1.58:29 -o diagram");
+  const Outcome outcome = workspace.succeed("explore ball --over Gamma=1.02:1.56:28 -o diagram");
   INFO(outcome.text());
   // The orbit with one impact a period: LP at pi (1 - r) / (1 + r), PD where the square of Gamma is that of LP and of
   // 2 (1 + r^2) / (1 + r)^2.
@@ -419,6 +419,23 @@ TEST_CASE("a relief valve chatters, in any units") {
     const std::string text = workspace.succeed("simulate valve --dat valve -o valve").out;
     INFO(text);
     CHECK(contains(text, "period 2.8137143271"));
+  }
+}
+
+TEST_CASE("impacts of a valve cease to accumulate above q = 0.02 for r = 0.8, sections between them or not") {
+  const Workspace workspace;
+  std::string text = valve("1");
+  workspace.write("valve.tch", text);
+  workspace.write("cut.tch", text.replace(text.find("after any:"), std::string::npos,
+                                          "event top = v\nafter any: flow until seat -> impact, top -> identity\n"));
+  for (const char* problem : {"valve", "cut"}) {
+    INFO(problem);
+    const std::string command =
+        std::string("simulate ") + problem + " PAR(r)=0.8 --events 600 --max-period 250 PAR(q)=";
+    CHECK(contains(workspace.succeed(command + "0.02").out, "infinitely many impacts"));
+    const std::string beyond = workspace.succeed(command + "0.021").out;
+    INFO(beyond);
+    CHECK(contains(beyond, "Chatter is not complete"));
   }
 }
 
