@@ -5,6 +5,7 @@
 
 #include "continuation/orbit_trend.hpp"
 #include "files/solution_file.hpp"
+#include "orbit/admissibility.hpp"
 #include "orbit/collocation_rule.hpp"
 #include "orbit/defining_system.hpp"
 #include "run/data_start.hpp"
@@ -76,6 +77,7 @@ class RingAnalysis : public BranchAnalysis {
   void find_multipliers(const CondensedSystem& condensed, const Orbit& x, FloquetMultipliers& result) override {
     floquet_.compute(condensed, x, result);
     result.of_conserved = system_.conserved_quantities();
+    if (is_at_border_of_chatter(system_.system(), system_.signature(), x)) result.leave_out_at_border();
   }
   /// Events fix it.
   bool has_fixed_phase() const override;

@@ -315,16 +315,6 @@ OrbitCheck check_segments_of(const HybridSystem& system, const RunSettings& sett
   return check;
 }
 
-/// Is this where the impacts before a limit cease to accumulate? The limit has no derivative there.
-bool is_at_border_of_chatter(const HybridSystem& system, const RunSettings& settings, const Orbit& x) {
-  for (int s = 0; s < x.shape.segments; ++s) {
-    const int jump = settings.segments[static_cast<std::size_t>(s)].index.jump;
-    const tchat_chatter* const mode = system.chatter_with_limit(jump);
-    if (mode != nullptr && std::abs(system.event(mode->margin, x.end(s), x.par.data())) <= level::visible) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 OrbitCheck check_boundary_values(const HybridSystem& system, const RunSettings& settings, const Orbit& x,
@@ -342,7 +332,7 @@ OrbitCheck check_orbit(const HybridSystem& system, const RunSettings& settings, 
   check.computes_multipliers = true;
   const std::vector<SegmentLink> links =
       links_of(system, settings, x, check.segments, state_sizes(system, settings.signature(), x));
-  if (links.empty() || is_at_border_of_chatter(system, settings, x)) return check;
+  if (links.empty() || is_at_border_of_chatter(system, settings.signature(), x)) return check;
   const ReturnPencil pencil(links);
   if (!pencil.determines_multipliers(tolerance)) return check;
   check.multipliers = pencil.multipliers();

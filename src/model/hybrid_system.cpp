@@ -123,17 +123,29 @@ const tchat_sliding* HybridSystem::sliding_mode(int field) const {
   return nullptr;
 }
 
+namespace {
+
+template <class Condition>
+const tchat_chatter* find_chatter(const tchat_problem& table, const Condition& condition) {
+  const tchat_chatter* const end = table.chatter + table.chatter_modes;
+  const tchat_chatter* const found = std::find_if(table.chatter, end, condition);
+  return found == end ? nullptr : found;
+}
+
+}  // namespace
+
 const tchat_chatter* HybridSystem::chatter_with_limit(int jump) const {
-  for (int k = 0; k < table_->chatter_modes; ++k)
-    if (table_->chatter[k].limit == jump) return &table_->chatter[k];
-  return nullptr;
+  return find_chatter(*table_, [&](const tchat_chatter& mode) { return mode.limit == jump; });
+}
+
+const tchat_chatter* HybridSystem::chatter_in_contact(int field) const {
+  return find_chatter(*table_, [&](const tchat_chatter& mode) { return mode.contact == field; });
 }
 
 const tchat_chatter* HybridSystem::chatter_of_impact(const IndexVector& index) const {
-  for (int k = 0; k < table_->chatter_modes; ++k)
-    if (const tchat_chatter& mode = table_->chatter[k]; IndexVector{mode.field, mode.event, mode.impact} == index)
-      return &mode;
-  return nullptr;
+  return find_chatter(*table_, [&](const tchat_chatter& mode) {
+    return IndexVector{mode.field, mode.event, mode.impact} == index;
+  });
 }
 
 bool HybridSystem::comes_before_limit(const Signature& signature, std::size_t at) const {
@@ -152,11 +164,11 @@ std::vector<std::size_t> HybridSystem::without_chatter(const Signature& signatur
 }
 
 bool HybridSystem::is_made_by_chatter(FunctionKind kind, int index) const {
-  const std::span modes(table_->chatter, static_cast<std::size_t>(table_->chatter_modes));
-  return std::any_of(modes.begin(), modes.end(), [&](const tchat_chatter& mode) {
-    return kind == FunctionKind::jump ? index == mode.limit || index == mode.leave
-                                      : kind == FunctionKind::event && (index == mode.margin || index == mode.time);
-  });
+  return find_chatter(*table_, [&](const tchat_chatter& mode) {
+           return kind == FunctionKind::jump
+                      ? index == mode.limit || index == mode.leave
+                      : kind == FunctionKind::event && (index == mode.margin || index == mode.time);
+         }) != nullptr;
 }
 
 int HybridSystem::count(FunctionKind kind) const {

@@ -75,6 +75,8 @@ class HybridSystem {
   const tchat_sliding* sliding_mode(int field) const;
   /// The chatter mode that has this jump as its limit; null if the problem lists none.
   const tchat_chatter* chatter_with_limit(int jump) const;
+  /// The one with this field for its time in contact.
+  const tchat_chatter* chatter_in_contact(int field) const;
   /// The one whose impacts are such events.
   const tchat_chatter* chatter_of_impact(const IndexVector& index) const;
   /// Is this segment of a signature an impact that others follow up to their limit?

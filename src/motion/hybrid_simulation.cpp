@@ -245,10 +245,30 @@ HybridSimulation::HybridSimulation(ModeRule rule, const VectorXd& x0, const Vect
   settings_.flow.variational = false;
   mode_ = rule_.first(x0, par_);
   clear_absent(system_, mode_.field(), x_);
-  if (settings_.flow.sizes.size() != x_.size())
-    settings_.flow.sizes =
-        mode_.index_vectors.empty() ? VectorXd(x_.cwiseAbs()) : sizes_at(system_, mode_.field(), x_, par_);
+  if (settings_.flow.sizes.size() != x_.size()) settings_.flow.sizes = first_sizes();
+  leave_contact();
   surface_starts_ = tchat::surface_starts(rule_, mode_, x_, par_, settings_.side, accuracy());
+}
+
+/// In contact also those of the field that comes after it: the velocity that contact keeps at zero has none of its own.
+VectorXd HybridSimulation::first_sizes() const {
+  if (mode_.index_vectors.empty()) return x_.cwiseAbs();
+  const VectorXd sizes = sizes_at(system_, mode_.field(), x_, par_);
+  const tchat_chatter* const chatter = system_.chatter_in_contact(mode_.field());
+  return chatter == nullptr ? sizes : sizes.cwiseMax(sizes_at(system_, chatter->field, x_, par_));
+}
+
+/// A start in contact behind its release leaves it at once. Not by the jump, which puts states on the release.
+void HybridSimulation::leave_contact() {
+  const tchat_chatter* const chatter =
+      mode_.index_vectors.empty() || is_cyclic() ? nullptr : system_.chatter_in_contact(mode_.field());
+  if (chatter == nullptr) return;
+  const Surface release = surface(chatter->contact, chatter->release, x_);
+  if (release.is_near || !(release.h < 0.0)) return;
+  Mode free = rule_.next({chatter->contact, chatter->release, chatter->leave}, x_, par_);
+  if (free.index_vectors.empty()) return;
+  mode_ = std::move(free);
+  released_ = chatter->release;
 }
 
 HybridSimulation::HybridSimulation(const HybridSimulation& at, const VectorXd& end, SimulationSettings settings)
@@ -325,7 +345,7 @@ bool HybridSimulation::sticks_at_start(SimulatedSegment& segment) const {
     stop(segment, SegmentEnd::sticks,
          fmt::format(
              "after jump {} ({}) the flow goes on through {} at once, at x = {}: restitution {:.3g}, and impacts "
-             "accumulate where that is between 0 and 1",
+             "accumulate where that is between 0 and 1: change the jump, or let another mode follow it",
              last_.jump, system_.function_name(FunctionKind::jump, last_.jump),
              system_.function_name(FunctionKind::event, last_.event), state_text(x_), -at.rate / last_rate_));
     return true;

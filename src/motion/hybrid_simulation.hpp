@@ -239,6 +239,8 @@ class HybridSimulation {
   bool leaves_downwards(const IndexVector& index) const;
   /// Events of the first mode on whose surface the simulation began, and on which side of them.
   const std::vector<SurfaceStart>& surface_starts() const { return surface_starts_; }
+  /// The release from contact behind which the simulation began, in contact, so that it left that at once; 0: none.
+  int released() const { return released_; }
 
  private:
   StateAccuracy accuracy() const { return {sizes(), settings_.flow.surface_tolerance}; }
@@ -251,6 +253,8 @@ class HybridSimulation {
   bool is_wall(const IndexVector& index, const Eigen::VectorXd& x) const;
   bool begins() const { return last_.field == 0; }
 
+  Eigen::VectorXd first_sizes() const;
+  void leave_contact();
   SimulatedSegment begin_segment();
   std::vector<int> due_at_start(const SimulatedSegment& segment) const;
   bool sticks_at_start(SimulatedSegment& segment) const;
@@ -273,6 +277,7 @@ class HybridSimulation {
   double time_ = 0.0;
   long segments_ = 0;
   std::vector<SurfaceStart> surface_starts_;
+  int released_ = 0;
   IndexVector last_{0, 0, 0};      // that ended the segment before
   double last_rate_ = 0.0;         // h_x f there
   Eigen::VectorXd before_jump_;    // the state there

@@ -130,6 +130,14 @@ bool follows_rules_there(const HybridSystem& system, const Signature& signature,
                     signature[(static_cast<std::size_t>(s) + 1) % signature.size()], x.end(s), x.par.data());
 }
 
+bool is_at_border_of_chatter(const HybridSystem& system, const Signature& signature, const Orbit& x) {
+  for (int s = 0; s < x.shape.segments; ++s) {
+    const tchat_chatter* const mode = system.chatter_with_limit(signature[static_cast<std::size_t>(s)].jump);
+    if (mode != nullptr && std::abs(system.event(mode->margin, x.end(s), x.par.data())) <= level::visible) return true;
+  }
+  return false;
+}
+
 bool follows_rules(const HybridSystem& system, const Signature& signature, const Orbit& x, int s) {
   if (follows_rules_there(system, signature, x, s)) return true;
   const IndexVector& from = signature[static_cast<std::size_t>(s)];

@@ -89,6 +89,8 @@ std::string describe(const Violation& violation, const HybridSystem& system);
 bool follows_rules(const HybridSystem& system, const Signature& signature, const Orbit& x, int s);
 /// The same of the state at its end alone.
 bool follows_rules_there(const HybridSystem& system, const Signature& signature, const Orbit& x, int s);
+/// Do the impacts before a limit cease to accumulate here? The limit has no derivative then.
+bool is_at_border_of_chatter(const HybridSystem& system, const Signature& signature, const Orbit& x);
 
 // What a segment that slides, or one that crosses a surface on which orbits may slide, must do at its start.
 

@@ -50,11 +50,17 @@ std::string two_fold(const HybridSystem& system, FunctionKind kind, int index) {
       mode->surface, system.function_name(FunctionKind::event, mode->surface), mode->minus, mode->plus);
 }
 
+/// Why a function that chatter makes is not.
+std::string no_limit(const HybridSystem& system, FunctionKind kind, int index) {
+  if (!system.is_made_by_chatter(kind, index)) return "";
+  return "; tchat makes it of the impacts, which accumulate where their restitution is between 0 and 1";
+}
+
 std::string place(const HybridSystem& system, FunctionKind kind, int index, int s, double tau, const double* x) {
   const char* kinds[] = {"vector field", "event function", "jump function", "integrand"};
-  return fmt::format("{} {} ({}) or a derivative of it is not finite on segment {} at tau = {:.6g}, {}{}",
+  return fmt::format("{} {} ({}) or a derivative of it is not finite on segment {} at tau = {:.6g}, {}{}{}",
                      kinds[static_cast<int>(kind)], index, system.function_name(kind, index), s + 1, tau,
-                     named_state(system, x), two_fold(system, kind, index));
+                     named_state(system, x), two_fold(system, kind, index), no_limit(system, kind, index));
 }
 
 }  // namespace

@@ -181,6 +181,8 @@ bool is_pinned_start(const HybridSystem& system, const Signature& signature, con
   system.first(FunctionKind::event, event, x.start(s), par, {}, &h, gradient.data(), nullptr);
   system.first(FunctionKind::event, v.event, x.end(before), par, {}, &h, terminal.data(), nullptr);
   composed.noalias() = gx.transpose() * gradient;
+  // Wherever it comes from, the jump leads to the surface.
+  if (composed.norm() <= structural_tolerance * gradient.norm() * std::max(1.0, gx.norm())) return true;
   const double sizes = composed.norm() * terminal.norm();
   return sizes > 0.0 && std::abs(std::abs(composed.dot(terminal)) / sizes - 1.0) < structural_tolerance;
 }

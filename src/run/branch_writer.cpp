@@ -45,6 +45,7 @@ std::string undetermined_text(const FloquetMultipliers& multipliers) {
       multipliers.undetermined == 1 ? "one multiplier is" : fmt::format("{} multipliers are", multipliers.undetermined),
       multipliers.is_flow_lost     ? "errors grow too much along the orbit"
       : multipliers.is_mesh_coarse ? "the mesh is too coarse"
+      : multipliers.is_at_border   ? "impacts cease to accumulate here, and their limit has no derivative"
                                    : "0/0 where h_x f = 0");
 }
 
@@ -310,7 +311,7 @@ std::string advice(const BranchSummary& summary) {
   if (!summary.remark.empty()) return "";  // it says why
   if (summary.undefined_function)
     return "  tried: halving the step down to DSMIN; beyond the last point that function has no value.\n"
-           "  you might: end the branch before it (RL0, RL1); let the plugin give a value there (a root or logarithm "
+           "  you might: end the branch before it (RL0, RL1); let the model give a value there (a root or logarithm "
            "of\n"
            "  what becomes negative, a division by what becomes 0); look at the last orbit (tchat orbit) for a border\n"
            "  of the model, which an event function should guard.\n";

@@ -54,10 +54,25 @@ void add_contacts(TestList& tests, const DefiningSystem& system, const RunSettin
         tests.push_back(std::make_unique<ContactTest>(system, s, event, settings.stop_at_grazing));
 }
 
-/// None where the problem does not say what follows.
+/// Is the branch a curve of orbits on which the impacts that segment s ends in, from 0, just cease to accumulate?
+bool holds_margin(const DefiningSystem& system, const RunSettings& settings, int s) {
+  const tchat_chatter* const chatter =
+      system.system().chatter_with_limit(system.signature()[static_cast<std::size_t>(s)].jump);
+  if (chatter == nullptr) return false;
+  const std::vector<MonitorName> names = monitor_names(system.system(), settings);
+  return std::any_of(settings.held.begin(), settings.held.end(), [&](const HeldValue& held) {
+    if (!is_monitor(settings, held.parameter)) return false;
+    const MonitorName& name = names[static_cast<std::size_t>(held.parameter - first_monitor(settings))];
+    return name.kind == MonitorName::Kind::end && name.number == s + 1 && name.quantity.kind == Quantity::Kind::event &&
+           name.quantity.index == chatter->margin;
+  });
+}
+
+/// None where the problem does not say what follows, and where it is one thing on one side of a whole curve.
 void add_rules(TestList& tests, const DefiningSystem& system, const RunSettings& settings) {
   for (int s = 0; s < system.segments() && system.system().has_successors(); ++s)
-    tests.push_back(std::make_unique<RuleTest>(system, s, settings.stop_at_grazing));
+    if (!holds_margin(system, settings, (s + 1) % system.segments()))
+      tests.push_back(std::make_unique<RuleTest>(system, s, settings.stop_at_grazing));
 }
 
 /// Where a segment of one side of a sliding mode is followed by one of the other.

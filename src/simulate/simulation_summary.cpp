@@ -52,6 +52,8 @@ std::string position_text(const HybridSystem& system, const StartNotice& notice)
       return fmt::format("lies on {}, whose function falls", event);
     case Kind::after_event:
       return fmt::format("is taken as the state after {}, whose function falls", event);
+    case Kind::released:
+      return fmt::format("is in contact behind {}, which ends that, and goes on as after it", event);
     default:
       return fmt::format("is taken as the state before {}, whose function falls", event);
   }
@@ -69,6 +71,8 @@ std::string cure_of(Kind kind) {
     case Kind::after_event:
       return "  The jump sends such a state to the same surface, falling again. With --before-event the event happens "
              "at t = 0.\n";
+    case Kind::released:
+      return "";
     default:
       return "  The jump takes the state off the surface, and the event happens at t = 0. With --after-event it does "
              "not happen.\n";
@@ -92,6 +96,9 @@ std::vector<StartNotice> start_notices(const HybridSimulation& simulation) {
     if (start.is_undecided && !is_impact)
       notices.push_back({start.is_after ? Kind::after_event : Kind::before_event, start.index.event, start.h});
   }
+  if (const int release = simulation.released(); release != 0)
+    notices.push_back(
+        {Kind::released, release, clear_value(system, release, x, simulation.parameters(), simulation.sizes())});
   for (const int event : events_that_matter(simulation)) {
     const bool is_decided = std::any_of(on_surface.begin(), on_surface.end(),
                                         [event](const SurfaceStart& start) { return start.index.event == event; });

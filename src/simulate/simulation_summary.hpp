@@ -21,6 +21,7 @@ struct StartNotice {
     field_changes,  ///< on the surface of an event after which another field holds, and falling
     after_event,    ///< on a surface and falling: taken as a state after the event
     before_event,   ///< likewise: the event happens at once
+    released,       ///< in contact, behind its release: goes on as after it
   } kind = Kind::behind;
   int event = 0;
   double h = 0.0;

@@ -97,7 +97,7 @@ SpecialPoint ContactTest::classify(const TestedPoint& point, bool rising) const 
                       contact->tau, state_text(system_.system(), point.orbit, contact->state.data()))};
 }
 
-std::string RuleTest::name() const { return fmt::format("what follows segment {}", segment_ + 1); }
+std::string RuleTest::name() const { return fmt::format("the rule for what follows segment {}", segment_ + 1); }
 
 TestValue RuleTest::evaluate(const TestedPoint& point) const {
   const bool follows = follows_rules_there(system_.system(), system_.signature(), point.orbit, segment_);

@@ -50,6 +50,7 @@ struct FloquetMultipliers {
   /// behind it: `undetermined` are left out for that, and `structural` says nothing of the mesh.
   bool is_flow_lost = false;
   bool is_mesh_coarse = false;  ///< so it may be as well where the mesh does not resolve the orbit
+  bool is_at_border = false;    ///< or where impacts cease to accumulate, where their limit has no derivative
   int surely_outside = 0;       ///< of those left out: they are outside of the unit circle, wherever they are
   /// Of the others, relative to those beyond the unit circle, where it is more than the accuracy of orbits.
   double uncertainty = 0.0;
@@ -63,6 +64,8 @@ struct FloquetMultipliers {
     return std::span(values).subspan(std::min(values.size(), static_cast<std::size_t>(known())));
   }
   bool determined() const { return valid && undetermined == 0; }
+  /// Leaves out all but those that are the same for every orbit.
+  void leave_out_at_border();
 
   /// All |mu| <= 1 + 1e-5 of those that are known; of eigenvalues all real parts <= 0 but for rounding.
   bool stable() const;

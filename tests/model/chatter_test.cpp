@@ -159,3 +159,61 @@ TEST_CASE("derivatives of the limit of chatter agree with differences, and conta
   CHECK(std::abs(f[0] - f[2]) < 1e-12);
   CHECK(std::abs(f[1] + on[2]) < 1e-12);  // the table's acceleration
 }
+
+namespace {
+
+/// A ball on a platform that is driven through a spring, and as heavy as three balls.
+struct Platform {
+  static constexpr int dimension = 6, parameters = 2, fields = 2, events = 3, jumps = 4;
+  static constexpr tchat::Chatter chatter{
+      .field = 1, .event = 1, .impact = 1, .contact = 2, .release = 2, .limit = 3, .margin = 3, .leave = 4, .time = 0};
+
+  template <class T>
+  void field(int, const T* y, const T* par, T* f) const {
+    const T growth = 1.0 - y[4] * y[4] - y[5] * y[5];
+    f[0] = y[1];
+    f[1] = (-4.0 * y[0] - 0.4 * y[1] + par[0] * y[4]) / 3.0 - 1.0;
+    f[2] = y[3];
+    f[3] = T(-1.0);
+    f[4] = growth * y[4] - par[1] * y[5];
+    f[5] = growth * y[5] + par[1] * y[4];
+  }
+  template <class T>
+  T event(int, const T* y, const T*) const {
+    return y[2] - y[0];
+  }
+  template <class T>
+  void jump(int k, const T* y, const T*, T* g) const {
+    for (int i = 0; i < dimension; ++i) g[i] = y[i];
+    if (k != 1) return;
+    g[1] = y[1] + 0.35 * (y[3] - y[1]);
+    g[3] = y[3] - 1.05 * (y[3] - y[1]);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("where chatter becomes incomplete the limit has a value on both sides") {
+  const Platform platform;
+  const tchat::ChatterFunctions<Platform> functions(platform, Platform::chatter);
+  const double par[] = {1.7290026101, 1.072654058};
+  const std::array<double, 6> before{-0.91406658276, 1.716037906,   -0.91406658276,
+                                     1.2737170411,   0.92017690925, 0.39150281696};
+  std::array<double, 6> known{}, image{};
+  functions.limit(before.data(), par, known.data());
+  double least = 1.0, largest = -1.0;  // margin
+  for (int k = -2000; k <= 2000; ++k) {
+    std::array<double, 6> x = before;
+    x[1] *= 1.0 + 1e-13 * k;
+    functions.limit(x.data(), par, image.data());
+    for (std::size_t i = 0; i < image.size(); ++i) {
+      INFO(k << ": state " << i);
+      REQUIRE(std::abs(image[i] - known[i]) < 1e-9);
+    }
+    const double margin = functions.margin(x.data(), par);
+    least = std::min(least, margin);
+    largest = std::max(largest, margin);
+  }
+  CHECK(least < -1e-7);
+  CHECK(largest > 1e-7);
+}

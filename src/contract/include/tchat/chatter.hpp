@@ -266,8 +266,13 @@ class ChatterFunctions : ImpactFlights<Problem> {
     return true;
   }
 
+  /// On C, at the place that v = 0 has beside the state: at larger v it may be any number.
   double restitution_of_chatter(const Point& at) const {
-    const double r = restitution(at.x.data(), at.par.data());
+    const State<double> d = direction(at.x.data(), at.par.data());
+    const double v = rate(at.x.data(), at.par.data());
+    Point at_rest = at;
+    for (std::size_t i = 0; i < n; ++i) at_rest.x[i] -= v * d[i];
+    const double r = restitution(at_rest.x.data(), at_rest.par.data());
     if (!(r > 0.0 && r < 1.0)) throw NoValue("impacts accumulate where their restitution is between 0 and 1 only");
     return r;
   }
@@ -316,7 +321,7 @@ class ChatterFunctions : ImpactFlights<Problem> {
     State<T> here;
     for (std::size_t i = 0; i < n; ++i) here[i] = x[i];
     T time(0.0);
-    constexpr double tiny = 1e-8;
+    constexpr double tiny = 1e-8, rounding = 1e-12;  // v is a difference: the next ones might be equal
     constexpr double longer = 2.0;
     double flight = HUGE_VAL;
     const int needed = static_cast<int>(orders) * impacts.apart + 1;
@@ -325,13 +330,13 @@ class ChatterFunctions : ImpactFlights<Problem> {
       if (share_of_border(numbers(here.data(), par), r) > near_enough) impacts.near = k + 1;
       impacts.is_complete = k + 1 - impacts.near == needed;
       if (impacts.is_complete) continue;
-      if (fly(jump(here.data(), par), par, here, time)) {
+      const double left = std::fabs(plain(impacts.list.back().v) / plain(impacts.list.front().v));
+      if (left > rounding && fly(jump(here.data(), par), par, here, time)) {
         const double before = std::exchange(flight, plain(time - impacts.list.back().time));
         if (flight <= longer * before) continue;
         break;
       }
-      const bool is_rounding = std::fabs(plain(impacts.list.back().v)) <= tiny * std::fabs(plain(impacts.list[0].v));
-      impacts.is_complete = is_rounding && impacts.near <= k;
+      impacts.is_complete = left <= tiny && impacts.near <= k;
       break;
     }
     return impacts;
