@@ -117,6 +117,7 @@ struct BranchSummary {
   std::string detail;               ///< which bound, which special point, what was tried
   bool undefined_function = false;  ///< no convergence, for a function of the problem has no value there
   bool stopped_at_grazing = false;  ///< by GRSTOP
+  bool stopped_at_border = false;   ///< likewise, where chatter becomes incomplete
   std::string remark;               ///< what becomes of the orbit at the end; "" if nothing is to be said
   std::string no_progress;          ///< why the branch has not gone anywhere; "" if it has
   int points = 0;

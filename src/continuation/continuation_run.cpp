@@ -437,8 +437,8 @@ SpecialPoint ContinuationRun::end_conditions(SpecialPoint special) {
   summary_.stopped_at_grazing =
       special.ends_branch &&
       (special.kind.kind == UserPointKind::contact || special.kind.kind == UserPointKind::impact_velocity ||
-       special.kind.kind == UserPointKind::rule || special.kind.kind == UserPointKind::chatter ||
-       special.kind.kind == UserPointKind::boundary_equilibrium);
+       special.kind.kind == UserPointKind::rule || special.kind.kind == UserPointKind::boundary_equilibrium);
+  summary_.stopped_at_border = special.ends_branch && special.kind.kind == UserPointKind::chatter;
   if (is_special && (special.ends_branch || (settings_.stop_at && settings_.stop_at(special))))
     end(EndReason::special_point, special.description);
   else if (special.ends_branch)

@@ -162,15 +162,16 @@ class FunctionChecker {
       const VectorXd f = function_.value(at);
       for (int r = 0; r < rows; ++r) failures[static_cast<std::size_t>(r)] += std::isfinite(f(r)) ? 0 : 1;
       if (f.allFinite()) evaluable_.push_back(at);
-      if (!f.allFinite() && !at.is_random) fault_at_given_state(f, at);
+      if (!f.allFinite() && !at.is_random && !is_made_by_chatter()) fault_at_given_state(f, at);
       if (f.allFinite() && function_.value(at) != f)
         add_fault("changes",
                   fmt::format("{} changes from call to call at the same point: it must depend on x and par only",
                               function_.row_name(0)));
     }
     const int all = static_cast<int>(points_.size());
-    if (evaluable_.empty() && system_.is_made_by_chatter(check_.kind, check_.index))
-      return check_.notes.push_back(fmt::format("contact begins or ends next to none of {} states", all));
+    if (evaluable_.empty() && is_made_by_chatter())
+      return check_.notes.push_back(fmt::format(
+          "no value at {} of {} states: neither do impacts accumulate there nor does contact end", all, all));
     for (int r = 0; r < rows; ++r) {
       if (failures[static_cast<std::size_t>(r)] == all)
         add_fault(fmt::format("NaN {}", function_.row_name(r)),
@@ -280,10 +281,10 @@ class FunctionChecker {
                   every_variable ? of_second_.variable_name(k) : "a random direction");
   }
 
-  /// What chatter makes of impacts takes long to evaluate.
-  bool takes_every_variable() const {
-    return of_second_.variables() <= many_variables && !system_.is_made_by_chatter(check_.kind, check_.index);
-  }
+  /// Then it has values only where impacts accumulate, and takes long to evaluate.
+  bool is_made_by_chatter() const { return system_.is_made_by_chatter(check_.kind, check_.index); }
+
+  bool takes_every_variable() const { return of_second_.variables() <= many_variables && !is_made_by_chatter(); }
 
   void check_along(const TestPoint& at, const VectorXd& direction, const std::string& name) {
     VectorXd along;

@@ -250,6 +250,8 @@ std::string reason_text(const BranchSummary& summary, bool told) {
     case EndReason::no_orbit:
       return summary.detail;
     case EndReason::special_point:
+      if (summary.stopped_at_border)
+        return "where chatter becomes incomplete, above; beyond it its impacts have no limit";
       if (!summary.stopped_at_grazing) return "at the last special point above";
       return fmt::format("at the {} above; with GRSTOP=0 the branch continues beyond it",
                          summary.family->summary.contact);

@@ -254,6 +254,15 @@ Command held_contact_words(const UserPointKind& kind, const RunSettings& setting
   return {fmt::format("HOLD={{min(h{}{}): 0}}", kind.index, place), "ISW=1", fmt::format("GCIPSI=[{}]", others)};
 }
 
+/// Words of `tchat run` that keep the margin of chatter zero where it becomes incomplete; none at other labels.
+Command held_margin_words(const UserPointKind& kind, const RunSettings& settings, const HybridSystem& system) {
+  if (kind.kind != UserPointKind::chatter || !settings.held.empty()) return {};
+  const auto segment = static_cast<std::size_t>(kind.segment - 1);
+  const tchat_chatter* const chatter = system.chatter_with_limit(settings.segments.at(segment).index.jump);
+  if (chatter == nullptr) return {};
+  return {fmt::format("HOLD={{end(h{}, {}): 0}}", chatter->margin, kind.segment), "ISW=1"};
+}
+
 /// Is it where a curve of equilibria in two parameters reaches a surface?
 bool is_boundary_of_curve(const NextStart& start, const RunSettings& settings) {
   const ProblemFacts& facts = problem_type(settings).facts();
@@ -353,7 +362,7 @@ Commands next_commands(const NextStart& start, const RunSettings& settings, cons
     return {resegmentation(start, output, target, names.start),
             words_of({run_from_files(problem, names.start), {"-o", names.branch_after_start}})};
   }
-  if (start.kind.kind == UserPointKind::rule || start.kind.kind == UserPointKind::chatter)
+  if (start.kind.kind == UserPointKind::rule)
     return {words_of({{"simulate"},
                       problem_words(problem),
                       {"-s", output, fmt::format("IRS={}", start.label), "--dat", names.branch}})};
@@ -380,6 +389,8 @@ CurveCommand curve_command(const NextStart& start, const RunSettings& settings, 
   const std::string own = type_name(start.type, start.kind);
   if (is_held_contact(start.kind, settings, system))
     return {{from_label(held_contact_words(start.kind, settings), to_curve)}, "", own};
+  if (const Command words = held_margin_words(start.kind, settings, system); !words.empty())
+    return {{from_label(words, to_curve)}, "", own};
   const std::string no_grazing =
       is_grazing(start.kind) ? why_no_grazing_curve(start.kind, settings, system) : "no contact";
   if (no_grazing.empty())

@@ -240,12 +240,23 @@ std::string start_text(const HybridSystem& system, const SimulationStart& start,
   return text;
 }
 
+namespace {
+
+/// Does the orbit that the motion has settled on have the limit of such impacts? Then it was of the way there.
+bool has_limit_of(const HybridSystem& system, const Turn& turn, const IndexVector& impact) {
+  const tchat_chatter& mode = *system.chatter_of_impact(impact);
+  return std::any_of(turn.segments.begin(), turn.segments.end(),
+                     [&](const auto& segment) { return segment.index.jump == mode.limit; });
+}
+
+}  // namespace
+
 std::string course_text(const HybridSystem& system, const SimulationResult& result, double end_time, double contact) {
   std::string text = fmt::format("{} up to t = {:.12g}", counted(result.events, "event"), end_time);
   if (result.dropped > 0) text += fmt::format(", the first {} dropped as transient", result.dropped);
   text += "\n" + why_it_ended(system, result);
   for (const auto& [index, series] : result.broken_series)
-    if (system.chatter_of_impact(index) != nullptr)
+    if (system.chatter_of_impact(index) != nullptr && !has_limit_of(system, result.turn, index))
       text += fmt::format(
           "Chatter is not complete: {} series of events of jump {} ({}) at falling intervals, up to {} in a "
           "row,\nended in a longer one, before any limit.\n",

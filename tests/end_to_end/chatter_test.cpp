@@ -155,6 +155,30 @@ TEST_CASE("a sweep that begins in contact leaves it where it cannot last, and ke
   CHECK(contains(outcome.out, "Periodic orbit"));
 }
 
+TEST_CASE("a bead in a shaken slot chatters on both walls, and a curve ends where neither's chatter is complete") {
+  const Workspace workspace;
+  workspace.write("slot.tch",
+                  "par g=0.05, rr=0.6\ninit v=0.3, c=1\ngrowth = 1 - c^2 - s^2\nx' = v\nv' = c + 0.05 - 0.1*v\n"
+                  "c' = growth*c - s\ns' = growth*s + c\nevent left = x + g\nevent right = g - x\n"
+                  "jump hitL: v -> -0.4*v\njump hitR: v -> -rr*v\ncontact onL on left until freeL: flow, hitL -> setL\n"
+                  "contact onR on right until freeR: flow, hitR -> setR\n"
+                  "after any: flow until left -> hitL, right -> hitR\n");
+  // Away from contact what is made of the impacts has no value, and that is no fault.
+  const Outcome checked = workspace.succeed("check slot --state 0.1,0.5,1,0 --random 3");
+  INFO(checked.text());
+  CHECK(contains(checked.out, "No fault found"));
+  workspace.succeed("simulate slot --max-period 64 --dat two -q");
+  workspace.succeed("run slot -c two -d two -o two RL1=0.4 DSMAX=0.02 NMX=200");
+  const Outcome outcome = workspace.succeed(std::vector<std::string>{
+      "run", "slot", "-c", "r.two", "-s", "two", "IRS=GR1", "-o", "border", "HOLD={end(setR_margin,7): 0}",
+      "ICP=[rr,g,end(setR_margin,7)]", "RL0=0.3", "RL1=0.8", "DS=-0.01", "DSMAX=0.05", "NMX=80"});
+  INFO(outcome.text());
+  CHECK(contains(outcome.out, "event 1, left"));
+  CHECK(contains(outcome.out, "stopped: where chatter becomes incomplete"));
+  for (const PointRow& row : rows_of(workspace.points("border")))
+    CHECK(std::abs(row.values.back() - 2 * std::acos(-1.0)) < 1e-8);
+}
+
 TEST_CASE("explore draws orbits with chatter once, beside those that it knows of the bouncing ball") {
   const Workspace workspace;
   workspace.write("ball.tch", ball);
@@ -258,10 +282,9 @@ TEST_CASE("the curve on which chatter becomes incomplete leads from one restitut
   workspace.write("ball.tch", ball);
   workspace.succeed("simulate ball --dat rest -q");
   workspace.succeed("run ball -c rest -d rest -o locked RL1=2.5 DSMAX=0.05 NMX=400");
-  const Outcome outcome = workspace.succeed(
-      std::vector<std::string>{"run", "ball", "-c", "r.locked", "-s", "locked", "IRS=GR1", "-o", "border",
-                               "HOLD={end(settled_margin,4): 0}", "ICP=[r,Gamma,end(settled_margin,4)]", "UZR={r: 0.3}",
-                               "RL0=0.29", "RL1=0.8", "DS=-0.01", "DSMAX=0.05", "GRSTOP=0"});
+  const Outcome outcome = workspace.succeed(std::vector<std::string>{
+      "run", "ball", "-c", "r.locked", "-s", "locked", "IRS=GR1", "-o", "border", "HOLD={end(settled_margin,4): 0}",
+      "ICP=[r,Gamma,end(settled_margin,4)]", "UZR={r: 0.3}", "RL0=0.29", "RL1=0.8", "DS=-0.01", "DSMAX=0.05"});
   INFO(outcome.text());
   CHECK(contains(outcome.out, "UZ label 3 at r = 0.3, Gamma = 1.94693848"));
   CHECK_FALSE(contains(outcome.out, "incomplete"));

@@ -202,7 +202,7 @@ TEST_CASE("where chatter becomes incomplete the limit has a value on both sides"
   std::array<double, 6> known{}, image{};
   functions.limit(before.data(), par, known.data());
   double least = 1.0, largest = -1.0;  // margin
-  for (int k = -2000; k <= 2000; ++k) {
+  for (int k = -2000; k <= 2000; k += 5) {
     std::array<double, 6> x = before;
     x[1] *= 1.0 + 1e-13 * k;
     functions.limit(x.data(), par, image.data());

@@ -155,7 +155,11 @@ class ChatterFunctions : ImpactFlights<Problem> {
   template <class T>
   void limit(const T* x, const T* par, T* out) const {
     const Rest<T> last = rest(x, par);
-    const State<T> start = back_in_contact(last.state, last.time, par);
+    const Point from = numbers(x, par);
+    State<double> sizes = field(from.x.data(), from.par.data());  // what is zero in contact has that of the impacts
+    for (std::size_t i = 0; i < n; ++i)
+      sizes[i] = std::fabs(sizes[i] * plain(last.time)) + std::fabs(from.x[i]) + std::fabs(plain(last.state[i]));
+    const State<T> start = back_in_contact(last.state, last.time, par, sizes);
     for (std::size_t i = 0; i < n; ++i) out[i] = start[i];
   }
 
@@ -367,27 +371,30 @@ class ChatterFunctions : ImpactFlights<Problem> {
     return {nodes.front().state, nodes.front().time};
   }
 
-  /// Follows the motion in contact back from x by `time`, in as many equal parts as accuracy needs.
+  /// Follows the motion in contact back from x by `time`, in as many equal parts as accuracy needs. `sizes`: of states.
   template <class T>
-  State<T> back_in_contact(const State<T>& x, const T& time, const T* par) const {
+  State<T> back_in_contact(const State<T>& x, const T& time, const T* par, const State<double>& sizes) const {
     constexpr int most_parts = 64;
     constexpr double accurate = 1e-13;
     const Point from = numbers(x.data(), par);
     int parts = 1;
-    for (bool is_accurate = false; !is_accurate && parts < most_parts; parts *= is_accurate ? 1 : 2) {
-      is_accurate = true;
-      State<double> y = from.x, error;
-      for (int k = 0; k < parts; ++k) {
-        const State<double> before = y;
-        y = part_back(y, plain(time) / parts, from.par.data(), error);
-        for (std::size_t i = 0; i < n; ++i)
-          is_accurate = is_accurate && error[i] <= accurate * (std::fabs(before[i]) + std::fabs(y[i] - before[i]));
-      }
-    }
+    while (parts < most_parts && !(error_of_parts(from, plain(time), parts, sizes) <= accurate)) parts *= 2;
     State<T> y = x;
-    State<double> error;
-    for (int k = 0; k < parts; ++k) y = part_back(y, time / static_cast<double>(parts), par, error);
+    State<double> change;
+    for (int k = 0; k < parts; ++k) y = part_back(y, time / static_cast<double>(parts), par, change);
     return y;
+  }
+
+  /// The largest error of a part, beside the sizes.
+  double error_of_parts(const Point& from, double time, int parts, const State<double>& sizes) const {
+    State<double> y = from.x, change;
+    double error = 0.0;
+    for (int k = 0; k < parts; ++k) {
+      y = part_back(y, time / parts, from.par.data(), change);
+      for (std::size_t i = 0; i < n; ++i)
+        if (change[i] != 0.0) error = std::fmax(error, change[i] <= sizes[i] ? change[i] / sizes[i] : HUGE_VAL);
+    }
+    return error;
   }
 
   /// Gragg's method, of whose steps the errors are even powers, extrapolated. `error`: the last change.
