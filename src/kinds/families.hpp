@@ -77,7 +77,8 @@ class RingAnalysis : public BranchAnalysis {
   void find_multipliers(const CondensedSystem& condensed, const Orbit& x, FloquetMultipliers& result) override {
     floquet_.compute(condensed, x, result);
     result.of_conserved = system_.conserved_quantities();
-    if (is_at_border_of_chatter(system_.system(), system_.signature(), x)) result.leave_out_at_border();
+    result.is_at_border = is_at_border_of_chatter(system_.system(), system_.signature(), x);
+    if (result.is_at_border) result.leave_out();
   }
   /// Events fix it.
   bool has_fixed_phase() const override;

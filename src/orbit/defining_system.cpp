@@ -50,9 +50,10 @@ std::string two_fold(const HybridSystem& system, FunctionKind kind, int index) {
       mode->surface, system.function_name(FunctionKind::event, mode->surface), mode->minus, mode->plus);
 }
 
-/// Why a function that chatter makes is not.
+/// Why a function that chatter makes of impacts is not.
 std::string no_limit(const HybridSystem& system, FunctionKind kind, int index) {
-  if (!system.is_made_by_chatter(kind, index)) return "";
+  const bool is_of_contact = kind == FunctionKind::jump && system.chatter_with_limit(index) == nullptr;
+  if (is_of_contact || !system.is_made_by_chatter(kind, index)) return "";
   return "; tchat makes it of the impacts, which accumulate where their restitution is between 0 and 1";
 }
 

@@ -147,11 +147,10 @@ void section_at_end(const DefiningSystem& defining, const Orbit& x, int s, Vecto
 
 bool FloquetMultipliers::stable() const { return valid && stable_count() == static_cast<int>(values.size()); }
 
-void FloquetMultipliers::leave_out_at_border() {
+void FloquetMultipliers::leave_out() {
   const std::size_t kept = std::min(values.size(), static_cast<std::size_t>(known()));
   undetermined += static_cast<int>(values.size() - kept);
   values.resize(kept);
-  is_at_border = true;
 }
 
 int FloquetMultipliers::stable_count() const {

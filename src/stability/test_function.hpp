@@ -65,7 +65,7 @@ struct FloquetMultipliers {
   }
   bool determined() const { return valid && undetermined == 0; }
   /// Leaves out all but those that are the same for every orbit.
-  void leave_out_at_border();
+  void leave_out();
 
   /// All |mu| <= 1 + 1e-5 of those that are known; of eigenvalues all real parts <= 0 but for rounding.
   bool stable() const;

@@ -334,13 +334,13 @@ class ChatterFunctions : ImpactFlights<Problem> {
       if (share_of_border(numbers(here.data(), par), r) > near_enough) impacts.near = k + 1;
       impacts.is_complete = k + 1 - impacts.near == needed;
       if (impacts.is_complete) continue;
-      const double left = std::fabs(plain(impacts.list.back().v) / plain(impacts.list.front().v));
-      if (left > rounding && fly(jump(here.data(), par), par, here, time)) {
+      const double first = std::fabs(plain(impacts.list.front().v)), last = std::fabs(plain(impacts.list.back().v));
+      if (last > rounding * first && fly(jump(here.data(), par), par, here, time)) {
         const double before = std::exchange(flight, plain(time - impacts.list.back().time));
         if (flight <= longer * before) continue;
         break;
       }
-      impacts.is_complete = left <= tiny && impacts.near <= k;
+      impacts.is_complete = last <= tiny * first && impacts.near <= k;
       break;
     }
     return impacts;
