@@ -1,6 +1,8 @@
 #include "motion/recurrence.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -74,16 +76,36 @@ std::optional<ChatteringDetector::Accumulation> ChatteringDetector::accumulation
   }
   const double ratio = sum / static_cast<double>(ratios);
   if (largest - least > agreement * (1.0 - ratio)) return std::nullopt;
+  const auto is_as_last = [&](const Segment& segment) { return segment.index == segments_.back().index; };
+  if (std::all_of(segments_.end() - static_cast<std::ptrdiff_t>(q), segments_.end(), is_as_last))
+    return limit(1, q * turns, std::pow(ratio, 1.0 / static_cast<double>(q)));
   return limit(q, turns, ratio);
 }
 
+/// The last events may be so slow that their times are hardly known, or not at all where h_x f = 0: the limit that is
+/// known best, without so many of them.
 ChatteringDetector::Accumulation ChatteringDetector::limit(std::size_t q, std::size_t turns, double ratio) const {
+  Accumulation best = limit_before(segments_.size(), q, turns, ratio);
+  double since = 0.0;
+  for (std::size_t left_out = 1; left_out + 2 * q <= q * turns; ++left_out) {
+    const std::size_t end = segments_.size() - left_out;
+    since += segments_[end].duration;
+    Accumulation found = limit_before(end, q, (q * turns - left_out) / q, ratio);
+    found.remaining = std::max(found.remaining - since, 0.0);
+    if (found.uncertainty < best.uncertainty) best = found;
+  }
+  return best;
+}
+
+/// From the segments before `end`, and from the last event among them.
+ChatteringDetector::Accumulation ChatteringDetector::limit_before(std::size_t end, std::size_t q, std::size_t turns,
+                                                                  double ratio) const {
   constexpr std::size_t most_nodes = 8;
   constexpr double safety = 5.0;  // of the last increment, which has been 2 to 5 times too small
   const std::size_t nodes = std::min(turns, most_nodes);
   std::array<double, most_nodes> lengths{};
   double known_to = 0.0, first = 0.0;  // where the first pattern ends, before the last one
-  std::size_t k = segments_.size();
+  std::size_t k = end;
   for (std::size_t j = 0; j < nodes; ++j) {
     if (j > 0) first -= lengths[j - 1];
     for (std::size_t i = 0; i < q; ++i) {

@@ -51,6 +51,7 @@ class ChatteringDetector {
   };
   std::optional<Accumulation> accumulation(std::size_t pattern) const;
   Accumulation limit(std::size_t pattern, std::size_t turns, double ratio) const;
+  Accumulation limit_before(std::size_t end, std::size_t pattern, std::size_t turns, double ratio) const;
 
   std::deque<Segment> segments_;                     // the last `most_kept`
   std::size_t shrinking_[longest_pattern + 1] = {};  // how many last segments were shorter than those q before

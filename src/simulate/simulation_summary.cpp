@@ -180,8 +180,8 @@ std::string why_it_ended(const HybridSystem& system, const SimulationResult& res
                   name(FunctionKind::jump, v.jump))
             : "(sticking, rolling) needs a mode of its own in the problem.\n";
     return fmt::format(
-        "Events accumulate (chattering): the last {} are of pattern length {}, each duration {:.6g} times that of one "
-        "pattern before.\nThe limit is at t = {}{}, {:.3g} after the last event, at about x = {}. The "
+        "Events accumulate (chattering): the last {} are of pattern length {}, each duration about {:.2g} times that "
+        "of one pattern before.\nThe limit is at t = {}{}, {:.3g} after the last event, at about x = {}. The "
         "simulation "
         "ends there:\nwhat follows {}",
         result.events > 20 ? 20 : result.events, limit.pattern, limit.ratio,

@@ -203,6 +203,24 @@ TEST_CASE("impacts that do not throw the motion back end a simulation with their
   }
 }
 
+TEST_CASE("without a contact mode a simulation ends at the limit, within a bar that slow impacts do not spoil") {
+  const Workspace workspace(Workspace::Plugin::source);
+  const std::string text = ball;
+  const std::size_t contact = text.find("contact");
+  workspace.write("open.tch", text.substr(0, contact) + "after any: flow until landing -> impact\n");
+  // The last impacts have velocities of 1e-10, and times that hardly say anything. Limits by Neville's tableau of nine
+  // impacts, the table by DOP853 to 1e-13: columns agree to 1e-10.
+  for (const auto& [gamma, limit] : {std::pair("0.9", 11.31308149619), {"1.2", 13.00934862948}}) {
+    const Outcome outcome =
+        workspace.tchat(fmt::format("simulate open --events 300 --state 0,3,0,1.3 PAR(r)=0.3 PAR(Gamma)={}", gamma));
+    INFO(outcome.text());
+    const double bar = number_after(outcome.out, "+- ");
+    CHECK(bar < 1e-5);
+    CHECK(std::abs(number_after(outcome.out, "The limit is at t = ") - limit) <= bar);
+    CHECK(contains(outcome.out, "are of pattern length 1"));
+  }
+}
+
 TEST_CASE("a simulation says that chatter is not complete where impacts at falling intervals end in a longer one") {
   // At Gamma = 1.4, r = 0.7 the table falls away before the ball rests on it; at 1.1, 0.5 the ball comes to rest.
   const Workspace workspace;

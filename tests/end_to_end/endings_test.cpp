@@ -153,7 +153,8 @@ TEST_CASE("a function that loses its value on the way is named where the branch 
   const Outcome outcome = workspace.tchat("run cliff -c impacting -d impacting -o branch DSMIN=1e-4");
   INFO(outcome.text());
   CHECK(outcome.status == 0);
-  check_contains(outcome.out, {"MX", "free flight", "alpha = 3.0999", "see above", "RL0, RL1", "let the model give a value"});
+  check_contains(outcome.out,
+                 {"MX", "free flight", "alpha = 3.0999", "see above", "RL0, RL1", "let the model give a value"});
   CHECK(outcome.out.find("not finite") == outcome.out.rfind("not finite"));  // told once
   CHECK_FALSE(contains(outcome.out, "NTST"));                                // no mesh helps
   const auto rows = workspace.points("branch").front().rows;

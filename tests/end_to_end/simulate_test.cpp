@@ -88,14 +88,6 @@ std::vector<long> segments_of(const std::string& trajectory) {
   return segments;
 }
 
-/// "... = NUMBER" after `key`.
-double number_after(const std::string& text, const std::string& key) {
-  const auto at = text.find(key);
-  INFO(text);
-  REQUIRE(at != std::string::npos);
-  return std::stod(text.substr(at + key.size()));
-}
-
 }  // namespace
 
 TEST_CASE("simulate: without any option, from the problem's start to its orbit") {

@@ -24,6 +24,13 @@ std::string executable() {
 
 }  // namespace
 
+double number_after(const std::string& text, const std::string& key) {
+  const auto at = text.find(key);
+  INFO(text);
+  REQUIRE(at != std::string::npos);
+  return std::stod(text.substr(at + key.size()));
+}
+
 std::vector<std::string> words_of(const std::string& text) {
   std::istringstream in(text);
   std::vector<std::string> words;

@@ -66,6 +66,9 @@ class Workspace {
 /// "a b  c" -> {"a", "b", "c"}
 std::vector<std::string> words_of(const std::string& text);
 
+/// "... = NUMBER" after `key`, which the text must have.
+double number_after(const std::string& text, const std::string& key);
+
 /// All rows of all sections.
 std::vector<PointRow> rows_of(const std::vector<PointSection>& sections);
 std::vector<int> labels_of(const std::vector<PointSection>& sections);
