@@ -630,7 +630,10 @@ class Problems(unittest.TestCase):
         curve = contact.curve(("omega", "alpha"), NMX=10)
         omega, zeta = curve["omega"], 0.05
         np.testing.assert_allclose(curve["alpha"], np.hypot(1 - omega ** 2, 2 * zeta * omega), rtol=1e-7)
-        self.assertTrue(os.path.exists("oscillator/p.smooth"))
+        again = tchat.load("oscillator/p.smooth", problem=PLUGIN)  # where Python has begun anew
+        self.assertEqual(len(again.GR[0].continue_(NMX=3, GRSTOP=0)), 3)
+        with self.assertRaisesRegex(tchat.Error, "problem=3: give a tchat.Problem"):
+            tchat.load("oscillator/p.smooth", problem=3)
 
     def test_parameters_and_constants(self):
         oscillator = tchat.Problem(PLUGIN, name="linosc")

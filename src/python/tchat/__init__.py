@@ -18,10 +18,10 @@ the same numbers, the same messages. What tchat refuses raises tchat.Error with 
     run, simulate, sweep    the commands themselves, with their own words
 """
 
-from .branch import Branch, Label, Part, load, run
+from .branch import Branch, Label, Part, run
 from .diagram import Diagram, ExploredBranch, ExploredCurve
 from .orbit import Orbit
-from .problem import Problem
+from .problem import Problem, load
 from .program import Error, Progress, Report, TchatWarning
 from .simulation import Simulation, Trajectory, read_events, read_trajectory, simulate
 from .start import Start

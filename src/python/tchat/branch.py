@@ -325,7 +325,7 @@ class Label:
     def _problem(self):
         self.branch._check()
         if self.branch.problem is None:
-            raise Error("%s: the problem is not known; load it with problem= (a tchat.Problem)" % self.branch.path)
+            raise Error("%s: the problem is not known; load it with problem= (a tchat.Problem or its file)" % self.branch.path)
         return self.branch.problem
 
     def continue_(self, *words, **values):
@@ -391,8 +391,8 @@ def _beside(path, letter):
     return os.path.join(folder, _LETTERS.get(name[:2], {}).get(letter, letter) + name[1:])
 
 
-def load(name, problem=None, program=None):
-    """The branch whose files are p.NAME, with q.NAME and d.NAME beside it; `name` may be p.NAME, with a folder."""
+def branch_of_files(name, problem=None, program=None):
+    """As tchat.load(), with a Problem."""
     path = os.fsdecode(name)
     if path.startswith("-"):  # no option
         path = os.path.join(".", path)

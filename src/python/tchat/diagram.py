@@ -3,7 +3,7 @@
 import json
 import os
 
-from .branch import load
+from .branch import branch_of_files
 from .orbit import _axes, read_signature
 from .program import Error
 from .sweep import read_sweep
@@ -26,7 +26,7 @@ class _Explored:
     def branch(self):
         if self._branch is None:
             path = os.path.join(self._diagram.path, "p." + self.name)
-            self._branch = load(path, self._diagram.problem, self._diagram._program)
+            self._branch = branch_of_files(path, self._diagram.problem, self._diagram._program)
         return self._branch
 
 

@@ -7,7 +7,7 @@ import shutil
 import tempfile
 import weakref
 
-from .branch import run_words
+from .branch import branch_of_files, run_words
 from .diagram import explore
 from .program import Error, GrowingSweep, ProgressBar, execute
 from .simulation import Simulation
@@ -199,3 +199,13 @@ class Problem:
 
     def __repr__(self):
         return "problem %s in %s" % (self.name, self.folder)
+
+
+def load(name, problem=None, program=None):
+    """The branch whose files are p.NAME, with q.NAME and d.NAME beside it; `name` may be p.NAME, with a folder. With a
+    Problem, or the file of one (problem="walker.tch"), it can be continued."""
+    if problem is not None and not isinstance(problem, Problem):
+        if not isinstance(problem, (str, os.PathLike)):
+            raise Error("problem=%r: give a tchat.Problem, or the file of one, problem=\"walker.tch\"" % (problem,))
+        problem = Problem(os.fsdecode(problem), program=program)
+    return branch_of_files(name, problem, program)
