@@ -249,7 +249,10 @@ class StatementReader {
       in_.expect("->", "behind an event comes its jump, as wall -> impact, and before them 'FIELD until'");
       line.ends.emplace_back(event, in_.expect_name("a jump"));
     } while (in_.accept(",") || in_.accept(";"));
-    in_.expect_end();
+    if (!in_.peek().is_end())
+      throw FormulaError{in_.peek().at,
+                         "a comma and the next event, or the end of the line, is expected here, as in 'after any: wall "
+                         "-> impact, top -> rebound'"};
     file_.successors.push_back(std::move(line));
   }
 

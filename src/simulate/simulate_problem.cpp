@@ -489,7 +489,7 @@ int simulate_problem(const SimulationRequest& request, std::ostream& screen, std
   } else {
     take_orbit(search, simulation, result);
   }
-  say(course_text(system, result, result.last.end_time(), request.contact));
+  say(course_text(system, result, start.par, request.contact));
 
   FoundOrbit orbit;
   std::optional<VectorXd> rest;

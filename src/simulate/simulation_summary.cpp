@@ -163,7 +163,18 @@ std::string multiplier_text(const std::complex<double>& mu) {
   return fmt::format("{:.10g} {} {:.10g} i", mu.real(), mu.imag() < 0.0 ? '-' : '+', std::abs(mu.imag()));
 }
 
-std::string why_it_ended(const HybridSystem& system, const SimulationResult& result) {
+/// Watched events that can only be met once they have been positive, which they are not when the segment begins, nor
+/// when it ends.
+std::string never_positive(const HybridSystem& system, const SimulatedSegment& segment, const VectorXd& par) {
+  std::string names;
+  for (const int event : segment.mode.terminal_events())
+    if (system.event(event, segment.start.data(), par.data()) <= 0.0 &&
+        system.event(event, segment.end.data(), par.data()) < 0.0)
+      names += fmt::format("{}{}", names.empty() ? "" : ", ", event_name(system, event));
+  return names;
+}
+
+std::string why_it_ended(const HybridSystem& system, const SimulationResult& result, const VectorXd& par) {
   const SimulatedSegment& last = result.last;
   if (result.accumulation) {
     const ChatteringDetector::Accumulation& limit = *result.accumulation;
@@ -207,6 +218,12 @@ std::string why_it_ended(const HybridSystem& system, const SimulationResult& res
       for (const int event : last.mode.terminal_events())
         watched += fmt::format("{}{}", watched.empty() ? "" : ", ", event_name(system, event));
       if (result.equilibrium) return fmt::format("The end: {}. Watched: {}.\n", last.message, watched);
+      if (const std::string below = never_positive(system, last, par); !below.empty())
+        return fmt::format(
+            "The end: {}. Watched: {}. The last state is x = {}.\nNegative there, and not positive when the segment "
+            "begins: {}. An event can be met only after its function has been\npositive: start where it is (--state), "
+            "or let a jump lead there; or a sign is wrong.\n",
+            last.message, watched, state_text(last.end), below);
       return fmt::format(
           "The end: {}. Watched: {}. The last state is x = {}.\nWait longer (--wait), start elsewhere (--state), watch "
           "other events (--mode, --signature), or end segments\nby an event that the motion meets, as a section.\n",
@@ -251,10 +268,11 @@ bool has_limit_of(const HybridSystem& system, const Turn& turn, const IndexVecto
 
 }  // namespace
 
-std::string course_text(const HybridSystem& system, const SimulationResult& result, double end_time, double contact) {
-  std::string text = fmt::format("{} up to t = {:.12g}", counted(result.events, "event"), end_time);
+std::string course_text(const HybridSystem& system, const SimulationResult& result, const VectorXd& par,
+                        double contact) {
+  std::string text = fmt::format("{} up to t = {:.12g}", counted(result.events, "event"), result.last.end_time());
   if (result.dropped > 0) text += fmt::format(", the first {} dropped as transient", result.dropped);
-  text += "\n" + why_it_ended(system, result);
+  text += "\n" + why_it_ended(system, result, par);
   for (const auto& [index, series] : result.broken_series)
     if (system.chatter_of_impact(index) != nullptr && !has_limit_of(system, result.turn, index))
       text += fmt::format(

@@ -53,7 +53,8 @@ std::string problem_text(const HybridSystem& system, const Eigen::VectorXd& par)
 std::string start_text(const HybridSystem& system, const SimulationStart& start, const Mode& mode);
 
 /// How long it ran, why it ended, what was seen on the way.
-std::string course_text(const HybridSystem& system, const SimulationResult& result, double end_time, double contact);
+std::string course_text(const HybridSystem& system, const SimulationResult& result, const Eigen::VectorXd& par,
+                        double contact);
 
 /// That the motion comes to rest at this equilibrium of a field.
 std::string rest_text(const Eigen::VectorXd& equilibrium);

@@ -311,6 +311,19 @@ TEST_CASE("simulate: --refine finds orbits that attract nothing, beside the logi
   CHECK(contains(simulate(workspace, "logistic --refine --lyapunov", 2).err, "excludes"));
 }
 
+TEST_CASE("simulate: a watched event that is never positive is named where none is met") {
+  const Workspace workspace;
+  workspace.write("fall.tch",
+                  "x' = v\nv' = -1\nevent floor = x\nevent ceiling = 1 - x\njump hit: v -> -0.5*v\n"
+                  "after any: floor -> hit, ceiling -> hit\n");
+  const Outcome resting = workspace.tchat("simulate fall --events 3");
+  CHECK(contains(resting.out, "not positive when the segment begins: event 1 (floor). An event"));
+  const Outcome rising = workspace.tchat("simulate fall --events 3 --state 0.5,-1 --signature 1,2,1 --wait 0.1");
+  INFO(rising.text());
+  CHECK(contains(rising.out, "no event within 0.1 time units"));
+  CHECK_FALSE(contains(rising.out, "not positive"));
+}
+
 TEST_CASE("simulate: chattering is told with its limit in time, no orbit is written") {
   const Workspace workspace;
   workspace.write("ball.cpp", ball);

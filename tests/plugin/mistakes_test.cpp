@@ -102,6 +102,7 @@ TEST_CASE("what follows an event") {
   check_mistake("after: wall -> impact", 6, "after what?");
   check_mistake("after any wall -> impact", 16, "':' is expected");
   check_mistake("after any: wall", 16, "behind an event comes its jump");
+  check_mistake("after any: wall -> impact | wall -> impact", 27, "a comma and the next event");
   check_mistake("after start: wall -> impact", 1, "'after wall: ...' without 'if'");
   CHECK_THAT(mistake_in(sound + "after any if x < 0: wall -> impact\n"),
              Contains("what follows the start is not said") && Contains("what follows wall -> impact is not said"));
