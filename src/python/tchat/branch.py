@@ -325,7 +325,8 @@ class Label:
     def _problem(self):
         self.branch._check()
         if self.branch.problem is None:
-            raise Error("%s: the problem is not known; load it with problem= (a tchat.Problem or its file)" % self.branch.path)
+            raise Error("%s: the problem is not known; load it with problem= (a tchat.Problem or its file)"
+                        % self.branch.path)
         return self.branch.problem
 
     def continue_(self, *words, **values):
