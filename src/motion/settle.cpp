@@ -103,18 +103,22 @@ void count_marks(const SimulatedSegment& segment, SimulationResult& result) {
 }
 
 void count_missed(const HybridSimulation& simulation, const SimulatedSegment& segment, SimulationResult& result) {
-  const double* const par = simulation.parameters().data();
-  for (const int event : segment.mode.terminal_events()) {
-    if (event == segment.index.event) continue;
-    if (simulation.system().event(event, segment.start.data(), par) >= 0.0 ||
-        simulation.system().event(event, segment.end.data(), par) >= 0.0)
-      continue;
+  for (const int event : missed_events(simulation.system(), segment, simulation.parameters())) {
     MissedEvent& missed = result.missed[event];
     if (missed.count++ == 0) missed.first = segment.number;
   }
 }
 
 }  // namespace
+
+std::vector<int> missed_events(const HybridSystem& system, const SimulatedSegment& segment, const VectorXd& par) {
+  std::vector<int> missed;
+  for (const int event : segment.mode.terminal_events())
+    if (event != segment.index.event && system.event(event, segment.start.data(), par.data()) <= 0.0 &&
+        system.event(event, segment.end.data(), par.data()) < 0.0)
+      missed.push_back(event);
+  return missed;
+}
 
 SimulationResult run_simulation(HybridSimulation& simulation, const SimulationPlan& plan,
                                 const std::function<void(const SimulatedSegment&)>& kept, AttractorSearch& search) {

@@ -113,7 +113,11 @@ class MotionJudge {
   std::optional<Eigen::VectorXd> equilibrium_;
 };
 
-/// Segments at whose begin and end a watched event was negative: it can be met only after it has been positive.
+/// Watched events that a segment cannot meet, as they can be met only after they have been positive: they are not at
+/// its begin, and negative at its end.
+std::vector<int> missed_events(const HybridSystem& system, const SimulatedSegment& segment, const Eigen::VectorXd& par);
+
+/// Segments that have missed an event.
 struct MissedEvent {
   long first = 0;  ///< number of the first of these segments
   long count = 0;

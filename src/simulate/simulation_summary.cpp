@@ -163,14 +163,9 @@ std::string multiplier_text(const std::complex<double>& mu) {
   return fmt::format("{:.10g} {} {:.10g} i", mu.real(), mu.imag() < 0.0 ? '-' : '+', std::abs(mu.imag()));
 }
 
-/// Watched events that can only be met once they have been positive, which they are not when the segment begins, nor
-/// when it ends.
-std::string never_positive(const HybridSystem& system, const SimulatedSegment& segment, const VectorXd& par) {
+std::string names_of(const HybridSystem& system, const std::vector<int>& events) {
   std::string names;
-  for (const int event : segment.mode.terminal_events())
-    if (system.event(event, segment.start.data(), par.data()) <= 0.0 &&
-        system.event(event, segment.end.data(), par.data()) < 0.0)
-      names += fmt::format("{}{}", names.empty() ? "" : ", ", event_name(system, event));
+  for (const int event : events) names += (names.empty() ? "" : ", ") + event_name(system, event);
   return names;
 }
 
@@ -214,16 +209,14 @@ std::string why_it_ended(const HybridSystem& system, const SimulationResult& res
     case SegmentEnd::interrupted:
       return "Interrupted.\n";
     case SegmentEnd::no_event: {
-      std::string watched;
-      for (const int event : last.mode.terminal_events())
-        watched += fmt::format("{}{}", watched.empty() ? "" : ", ", event_name(system, event));
+      const std::string watched = names_of(system, last.mode.terminal_events());
       if (result.equilibrium) return fmt::format("The end: {}. Watched: {}.\n", last.message, watched);
-      if (const std::string below = never_positive(system, last, par); !below.empty())
+      if (const std::string missed = names_of(system, missed_events(system, last, par)); !missed.empty())
         return fmt::format(
             "The end: {}. Watched: {}. The last state is x = {}.\nNegative there, and not positive when the segment "
             "begins: {}. An event can be met only after its function has been\npositive: start where it is (--state), "
             "or let a jump lead there; or a sign is wrong.\n",
-            last.message, watched, state_text(last.end), below);
+            last.message, watched, state_text(last.end), missed);
       return fmt::format(
           "The end: {}. Watched: {}. The last state is x = {}.\nWait longer (--wait), start elsewhere (--state), watch "
           "other events (--mode, --signature), or end segments\nby an event that the motion meets, as a section.\n",
@@ -389,8 +382,8 @@ std::string missed_text(const HybridSystem& system, const SimulationResult& resu
   for (const auto& [event, missed] : result.missed)
     if (static_cast<double>(missed.count) >= nearly_all * static_cast<double>(result.events - result.dropped))
       text += fmt::format(
-          "{} is negative when segment {} begins and when it ends, and so in {} of {} segments: an event can be met "
-          "only\nafter its function has been positive. A jump, or another sign, may be missing.\n",
+          "{} is not positive when segment {} begins and negative when it ends, and so in {} of {} segments: an event "
+          "can be met only\nafter its function has been positive. A jump, or another sign, may be missing.\n",
           event_name(system, event), missed.first, missed.count, result.events - result.dropped);
   return text;
 }
